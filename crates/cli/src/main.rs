@@ -1,0 +1,2 @@
+//! The juggler program.
+fn main() {}

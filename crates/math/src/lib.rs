@@ -1,0 +1,27 @@
+//! The words that every other crate speaks: points and directions, rays, boxes, transforms, colour,
+//! and the few functions whose results must be the same bits on every machine.
+//!
+//! Only scalar [`glam`] types are used (`Vec3`, not `Vec3A`): their sums and products run in one fixed
+//! order on every platform and are never fused. Sine, logarithm and friends come from [`fun`].
+
+pub mod aabb;
+pub mod color;
+pub mod frame;
+pub mod fun;
+pub mod hash;
+pub mod image;
+pub mod ray;
+pub mod robust;
+pub mod transform;
+pub mod warp;
+
+#[cfg(feature = "testing")]
+pub mod testing;
+
+pub use aabb::Aabb;
+pub use color::Rgb;
+pub use frame::Frame;
+pub use glam::{DVec2, DVec3, UVec2, Vec2, Vec3, vec2, vec3};
+pub use image::Image;
+pub use ray::Ray;
+pub use transform::Transform;

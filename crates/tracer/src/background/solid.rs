@@ -1,0 +1,32 @@
+//! One colour everywhere.
+//!
+//! ```json
+//! {"solid": {"color": [0, 0, 0]}}
+//! ```
+
+use super::Background;
+use juggler_math::{Ray, Rgb};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One colour everywhere.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Solid {
+    /// The colour.
+    pub color: Rgb,
+}
+
+impl Background for Solid {
+    fn radiance(&self, _ray: &Ray) -> Rgb {
+        self.color
+    }
+}
+
+#[cfg(test)]
+impl Solid {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default()]
+    }
+}

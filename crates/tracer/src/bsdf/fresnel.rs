@@ -1,0 +1,1 @@
+//! Reflection and refraction at a smooth border.

@@ -1,0 +1,74 @@
+//! Shapes: solids and surfaces, each in its own object space.
+
+use crate::surface::Surface;
+use juggler_math::{Aabb, Ray, Vec2, Vec3};
+
+mod sphere;
+
+/// What a ray found: 16 bytes, all that traversal carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray, in units of the ray's direction.
+    pub t: f32,
+    /// Whatever the shape needs to find the surface again (barycentrics of a triangle).
+    pub uv: Vec2,
+    /// Triangle or face.
+    pub part: u32,
+}
+
+/// A point chosen on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceSample {
+    /// The point, object space.
+    pub point: Vec3,
+    /// Unit normal there.
+    pub normal: Vec3,
+    /// Density per steradian seen from the place that asked.
+    pub pdf: f32,
+}
+
+/// Why a shape cannot be: the field at fault and what it should be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct InvalidShape {
+    /// Path of the field inside the shape, as in the scene file: `radius`, `vertices[3]`.
+    pub field: String,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+/// A solid or surface in object space. A ray's direction need not be unit: distances are in its units.
+pub trait Shape: Send + Sync {
+    /// Checks numbers that only together make sense and derives what tracing needs (a mesh builds its
+    /// hierarchy here). Called once before anything else.
+    fn prepare(&mut self) -> Result<(), InvalidShape>;
+    /// A box around everything; [`Aabb::INFINITE`] for a shape without end.
+    fn bounds(&self) -> Aabb;
+    /// The nearest hit in the ray's range.
+    fn intersect(&self, ray: &Ray) -> Option<Hit>;
+    /// Whether anything is hit in the ray's range.
+    fn occludes(&self, ray: &Ray) -> bool {
+        self.intersect(ray).is_some()
+    }
+    /// The surface at a hit that [`Shape::intersect`] gave for this ray.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+    /// Area of the whole surface; infinite for a shape without end, which cannot be a lamp.
+    fn area(&self) -> f32;
+    /// A point on the surface that faces `from`, for `u` in the unit square; `None` when there is none.
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample>;
+    /// Density per steradian with which [`Shape::sample`] goes in this unit direction.
+    fn pdf(&self, from: Vec3, direction: Vec3) -> f32;
+    /// How many triangles it is made of; 0 for exact shapes.
+    fn triangles(&self) -> usize {
+        0
+    }
+    /// Bytes on the heap.
+    fn heap_bytes(&self) -> usize {
+        0
+    }
+}
+
+closed_set! {
+    /// Every shape. In JSON: `{"sphere": {"radius": 1}}`.
+    pub enum AnyShape: Shape { sphere::Sphere }
+}
