@@ -3,7 +3,10 @@
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
+mod mesh_data;
 mod sphere;
+
+pub use mesh_data::MeshData;
 
 /// What a ray found: 16 bytes, all that traversal carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
