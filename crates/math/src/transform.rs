@@ -56,6 +56,11 @@ impl Transform {
         self.matrix
     }
 
+    /// The linear part of the way back.
+    pub fn inverse_matrix(&self) -> Mat3 {
+        self.inverse_matrix
+    }
+
     /// Where the local origin goes.
     pub fn origin(&self) -> Vec3 {
         self.translation
