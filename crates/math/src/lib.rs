@@ -6,6 +6,7 @@
 
 pub mod aabb;
 pub mod color;
+pub mod distribution;
 pub mod frame;
 pub mod fun;
 pub mod hash;
@@ -15,7 +16,7 @@ pub mod robust;
 pub mod transform;
 pub mod warp;
 
-#[cfg(feature = "testing")]
+#[cfg(any(test, feature = "testing"))]
 pub mod testing;
 
 pub use aabb::Aabb;

@@ -18,6 +18,14 @@ pub fn offset_origin(point: Vec3, error: f32, normal: Vec3, direction: Vec3) -> 
     let offset = normal * signed;
     let moved = point + offset;
     // Rounding of the sum itself must not undo the move: go one float further.
-    let push = |p: f32, o: f32| if o > 0.0 { p.next_up() } else if o < 0.0 { p.next_down() } else { p };
+    let push = |p: f32, o: f32| {
+        if o > 0.0 {
+            p.next_up()
+        } else if o < 0.0 {
+            p.next_down()
+        } else {
+            p
+        }
+    };
     Vec3::new(push(moved.x, offset.x), push(moved.y, offset.y), push(moved.z, offset.z))
 }

@@ -13,8 +13,7 @@ pub struct Transform {
 
 impl Transform {
     /// Leaves everything where it is.
-    pub const IDENTITY: Self =
-        Self { matrix: Mat3::IDENTITY, translation: Vec3::ZERO, inverse_matrix: Mat3::IDENTITY };
+    pub const IDENTITY: Self = Self { matrix: Mat3::IDENTITY, translation: Vec3::ZERO, inverse_matrix: Mat3::IDENTITY };
 
     /// From a linear part (columns: images of the axes) and a translation; `None` when it cannot be
     /// inverted or holds numbers that are not finite.
@@ -93,11 +92,7 @@ impl Transform {
 
     /// A world ray into local space; distances `t` stay the same, so the direction is not unit any more.
     pub fn ray_to_local(&self, ray: &Ray) -> Ray {
-        Ray {
-            origin: self.point_to_local(ray.origin),
-            direction: self.vector_to_local(ray.direction),
-            ..*ray
-        }
+        Ray { origin: self.point_to_local(ray.origin), direction: self.vector_to_local(ray.direction), ..*ray }
     }
 
     /// The world box around a local box (Arvo 1990); an infinite box stays infinite.
@@ -113,7 +108,8 @@ impl Transform {
         let [x, y, z] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis];
         let squared = x.length_squared();
         let tolerance = 1e-6 * squared;
-        let even = (y.length_squared() - squared).abs() <= tolerance && (z.length_squared() - squared).abs() <= tolerance;
+        let even =
+            (y.length_squared() - squared).abs() <= tolerance && (z.length_squared() - squared).abs() <= tolerance;
         let square = x.dot(y).abs() <= tolerance && y.dot(z).abs() <= tolerance && z.dot(x).abs() <= tolerance;
         (even && square).then(|| squared.sqrt())
     }
@@ -133,7 +129,7 @@ fn inverse(m: &Mat3) -> Option<Mat3> {
     let rows = [y.cross(z), z.cross(x), x.cross(y)];
     let determinant = x.dot(rows[0]);
     let size = x.length() * y.length() * z.length();
-    if !(determinant.abs() > 1e-12 * size) {
+    if !determinant.is_finite() || determinant.abs() <= 1e-12 * size {
         return None;
     }
     let inverse = glam::DMat3::from_cols(rows[0], rows[1], rows[2]).transpose() * (1.0 / determinant);

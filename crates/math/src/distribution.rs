@@ -1,0 +1,196 @@
+//! Piecewise constant densities over [0, 1) and [0, 1)², to sample environment maps and tables
+//! (Pharr, Jakob, Humphreys, PBR 4th ed., section 14.3.6 and appendix A.4).
+
+use crate::Vec2;
+
+/// A density over [0, 1), constant in cells of equal width.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distribution1D {
+    /// Density in each cell; the mean is 1.
+    density: Vec<f32>,
+    /// `cumulative[i]`: chance of the cells before `i`; one more than cells, from 0 to exactly 1.
+    cumulative: Vec<f32>,
+    /// Mean of the weights it was made from.
+    mean: f32,
+}
+
+impl Distribution1D {
+    /// From weights, one a cell; what is negative, NaN or infinite counts as zero. Uniform when all are zero;
+    /// `None` when there is none.
+    pub fn new(weights: &[f32]) -> Option<Self> {
+        if weights.is_empty() {
+            return None;
+        }
+        let usable = |w: f32| if w > 0.0 && w.is_finite() { f64::from(w) } else { 0.0 };
+        let total: f64 = weights.iter().map(|&w| usable(w)).sum();
+        let weight = |w: f32| if total > 0.0 { usable(w) } else { 1.0 };
+        let sum = if total > 0.0 { total } else { weights.len() as f64 };
+        let density = weights.iter().map(|&w| (weight(w) * weights.len() as f64 / sum) as f32).collect();
+        let mut running = 0.0;
+        let cumulative = std::iter::once(0.0).chain(weights.iter().map(|&w| {
+            running += weight(w);
+            (running / sum).min(1.0) as f32
+        }));
+        let mut cumulative: Vec<f32> = cumulative.collect();
+        // Rounding must leave no gap below 1, and no sample for the empty cells at the end.
+        let last = weights.iter().rposition(|&w| weight(w) > 0.0).unwrap_or(0);
+        cumulative[last + 1..].fill(1.0);
+        Some(Self { density, cumulative, mean: (total / weights.len() as f64) as f32 })
+    }
+
+    /// Mean of the weights.
+    pub fn mean(&self) -> f32 {
+        self.mean
+    }
+
+    /// Cells.
+    pub fn len(&self) -> usize {
+        self.density.len()
+    }
+
+    /// Never: there is at least one cell.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// A place in [0, 1), its density and its cell.
+    pub fn sample(&self, u: f32) -> (f32, f32, usize) {
+        let cell = self.cumulative.partition_point(|&c| c <= u).clamp(1, self.density.len()) - 1;
+        let (low, high) = (self.cumulative[cell], self.cumulative[cell + 1]);
+        let inside = if high > low { ((u - low) / (high - low)).min(1f32.next_down()) } else { 0.5 };
+        let mut x = ((cell as f32 + inside) / self.density.len() as f32).min(1f32.next_down());
+        // Rounding at a border must not carry the place into the next cell, which may be empty.
+        while self.cell(x) < cell {
+            x = x.next_up();
+        }
+        while self.cell(x) > cell {
+            x = x.next_down();
+        }
+        (x, self.density[cell], cell)
+    }
+
+    /// Density at `x` in [0, 1).
+    pub fn pdf(&self, x: f32) -> f32 {
+        self.density[self.cell(x)]
+    }
+
+    /// The chance of a cell, to pick one of a list; 0 for a cell that there is not.
+    pub fn probability(&self, cell: usize) -> f32 {
+        self.density.get(cell).map_or(0.0, |d| d / self.density.len() as f32)
+    }
+
+    fn cell(&self, x: f32) -> usize {
+        ((x * self.density.len() as f32) as usize).min(self.density.len() - 1)
+    }
+}
+
+/// A density over the unit square, constant in the cells of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distribution2D {
+    /// Density along x, given the row.
+    rows: Vec<Distribution1D>,
+    /// Density of the rows.
+    marginal: Distribution1D,
+}
+
+impl Distribution2D {
+    /// From weights, row by row; `None` when they are not `width` times a whole number above zero.
+    pub fn new(width: usize, weights: &[f32]) -> Option<Self> {
+        if width == 0 || !weights.len().is_multiple_of(width) {
+            return None;
+        }
+        let rows = weights.chunks_exact(width).map(Distribution1D::new).collect::<Option<Vec<_>>>()?;
+        let means: Vec<f32> = rows.iter().map(Distribution1D::mean).collect();
+        Some(Self { marginal: Distribution1D::new(&means)?, rows })
+    }
+
+    /// Mean of the weights.
+    pub fn mean(&self) -> f32 {
+        self.marginal.mean()
+    }
+
+    /// A place in the unit square and its density per unit area.
+    pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
+        let (y, marginal, row) = self.marginal.sample(u.y);
+        let (x, conditional, _) = self.rows[row].sample(u.x);
+        (Vec2::new(x, y), marginal * conditional)
+    }
+
+    /// Density per unit area at `p` in the unit square.
+    pub fn pdf(&self, p: Vec2) -> f32 {
+        self.marginal.pdf(p.y) * self.rows[self.marginal.cell(p.y)].pdf(p.x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, chi_squared};
+
+    #[test]
+    fn samples_follow_the_weights_and_never_hit_empty_cells() {
+        let weights = [0.0, 3.0, 0.0, f32::NAN, 1.0, 0.5, -2.0, 5.5, 0.0, 0.0];
+        let distribution = Distribution1D::new(&weights).unwrap();
+        let mut random = Random::new(31);
+        let mut observed = [0.0; 10];
+        for i in 0..100_000 {
+            // The ends of the range are where rounding would leak.
+            let u = [0.0, 1f32.next_down()].get(i).copied().unwrap_or_else(|| random.f32());
+            let (x, pdf, cell) = distribution.sample(u);
+            assert_eq!((pdf, cell), (distribution.pdf(x), (x * 10.0) as usize), "{u}");
+            observed[cell] += 1.0;
+        }
+        let expected = [0.0, 3e4, 0.0, 0.0, 1e4, 5e3, 0.0, 5.5e4, 0.0, 0.0];
+        chi_squared(&observed, &expected, 1e-3).unwrap();
+        assert_eq!((distribution.probability(1), distribution.probability(99)), (0.3, 0.0));
+    }
+
+    #[test]
+    fn within_a_cell_samples_are_uniform() {
+        let distribution = Distribution1D::new(&[1.0, 3.0]).unwrap();
+        let mut random = Random::new(32);
+        let mut observed = [0.0; 20];
+        for _ in 0..40_000 {
+            observed[(distribution.sample(random.f32()).0 * 20.0) as usize] += 1.0;
+        }
+        let expected: Vec<f64> = (0..20).map(|i| if i < 10 { 1000.0 } else { 3000.0 }).collect();
+        chi_squared(&observed, &expected, 1e-3).unwrap();
+    }
+
+    #[test]
+    fn two_dimensions_follow_the_weights() {
+        let mut random = Random::new(33);
+        let weights: Vec<f32> = (0..12 * 7).map(|i| if i % 5 == 0 { 0.0 } else { random.f32() }).collect();
+        let distribution = Distribution2D::new(12, &weights).unwrap();
+        let mut observed = vec![0.0; weights.len()];
+        for _ in 0..200_000 {
+            let (p, pdf) = distribution.sample(random.vec2());
+            let cell = (p.y * 7.0) as usize * 12 + (p.x * 12.0) as usize;
+            let density = weights[cell] / distribution.mean();
+            assert!((pdf - density).abs() < 1e-4 * density && pdf == distribution.pdf(p));
+            observed[cell] += 1.0;
+        }
+        let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
+        let expected: Vec<f64> = weights.iter().map(|&w| f64::from(w) / total * 200_000.0).collect();
+        chi_squared(&observed, &expected, 1e-3).unwrap();
+    }
+
+    #[test]
+    fn no_weight_at_all_is_uniform_and_wrong_sizes_are_refused() {
+        let flat = Distribution2D::new(2, &[0.0; 8]).unwrap();
+        assert_eq!(flat.sample(Vec2::new(0.3, 0.9)), (Vec2::new(0.3, 0.9), 1.0));
+        assert_eq!(flat.mean(), 0.0);
+        assert!(Distribution1D::new(&[]).is_none() && Distribution2D::new(3, &[1.0; 8]).is_none());
+        assert!(Distribution2D::new(3, &[]).is_none() && Distribution2D::new(0, &[]).is_none());
+    }
+
+    #[test]
+    fn a_single_huge_weight_among_many_small_ones() {
+        let mut weights = vec![1e-6; 100_000];
+        weights[77_777] = 1e6;
+        let distribution = Distribution1D::new(&weights).unwrap();
+        let (x, _, cell) = distribution.sample(0.5);
+        assert_eq!(cell, 77_777);
+        assert!((0.777_77..0.777_79).contains(&x));
+    }
+}
