@@ -1,1 +1,75 @@
-//! film
+//! The film: sums of samples, in an order that nothing but the sample indices decides.
+//!
+//! A pixel's samples are summed in blocks of [`BLOCK`] consecutive indices, each block in order, and the
+//! block sums are added in order. Whoever renders which block, on which thread or machine, the additions are
+//! the same ones, so the bits are too.
+
+use juggler_math::Rgb;
+
+mod digest;
+mod filter;
+
+pub use digest::{Digest, Summary};
+pub use filter::{
+    AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent,
+};
+
+/// Samples in a block.
+pub const BLOCK: u32 = 16;
+
+/// The running sum of one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelSum {
+    total: [f64; 3],
+    block: Rgb,
+}
+
+impl PixelSum {
+    /// Adds sample `index`; indices must come in order, starting at a block's first.
+    #[inline]
+    pub fn add(&mut self, index: u32, radiance: Rgb) {
+        self.block += radiance;
+        if index % BLOCK == BLOCK - 1 {
+            self.close();
+        }
+    }
+
+    fn close(&mut self) {
+        let block = self.block.to_array();
+        for (total, block) in self.total.iter_mut().zip(block) {
+            *total += f64::from(block);
+        }
+        self.block = Rgb::BLACK;
+    }
+
+    /// The mean of all `count` samples.
+    pub fn mean(mut self, count: u32) -> Rgb {
+        self.close();
+        let [r, g, b] = self.total.map(|total| (total / f64::from(count.max(1))) as f32);
+        Rgb::new(r, g, b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_is_the_mean_of_blocks_in_order() {
+        let samples: Vec<Rgb> = (0..40).map(|i| Rgb::new(i as f32, 0.1, 1e-3 * i as f32)).collect();
+        let mut sum = PixelSum::default();
+        for (index, sample) in samples.iter().enumerate() {
+            sum.add(index as u32, *sample);
+        }
+        let mut expected = [0f64; 3];
+        for block in samples.chunks(BLOCK as usize) {
+            let block = block.iter().fold(Rgb::BLACK, |a, b| a + *b);
+            for (e, b) in expected.iter_mut().zip(block.to_array()) {
+                *e += f64::from(b);
+            }
+        }
+        let expected = expected.map(|e| (e / 40.0) as f32);
+        assert_eq!(sum.mean(40).to_array(), expected);
+        assert_eq!(PixelSum::default().mean(0), Rgb::BLACK);
+    }
+}

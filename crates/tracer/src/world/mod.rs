@@ -1,10 +1,18 @@
 //! Everything that can be seen, immutable while rendering.
 
 use crate::background::AnyBackground;
+use crate::bsdf::Phong;
 use crate::light::AnyLight;
 use crate::material::{MaterialId, MaterialTable};
-use crate::shape::AnyShape;
-use juggler_math::Transform;
+use crate::shape::{AnyShape, Hit};
+use crate::surface::Surface;
+use juggler_bvh::{Bvh, Quality};
+use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2};
+
+mod items;
+mod trace;
+
+use items::Item;
 
 /// A shape in its place.
 #[derive(Clone, Debug)]
@@ -17,12 +25,63 @@ pub struct Object {
     pub material: MaterialId,
 }
 
+/// What a ray met, before anything is worked out about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldHit {
+    /// As the shape gave it.
+    pub hit: Hit,
+    object: u32,
+}
+
+impl WorldHit {
+    /// Nothing was met.
+    pub const NONE: Self = Self { hit: Hit { t: f32::INFINITY, uv: Vec2::ZERO, part: 0 }, object: u32::MAX };
+
+    /// Whether anything was met.
+    pub fn is_some(&self) -> bool {
+        self.object != u32::MAX
+    }
+}
+
+/// A point where a path touches the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex {
+    /// The surface there, world space.
+    pub surface: Surface,
+    /// What it is made of.
+    pub material: MaterialId,
+    /// Number of the object.
+    pub object: u32,
+}
+
+/// Counts for reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Geometry {
+    /// Objects.
+    pub shapes: usize,
+    /// Triangles of all meshes, polygons and triangles.
+    pub triangles: usize,
+    /// Lights.
+    pub lights: usize,
+    /// Bytes of shapes.
+    pub geometry_bytes: usize,
+    /// Bytes of the hierarchy over the objects.
+    pub bvh_bytes: usize,
+}
+
 /// Everything that can be seen.
 pub struct World {
     objects: Vec<Object>,
+    /// Bounded objects in the hierarchy's order.
+    items: Vec<Item>,
+    bvh: Bvh,
+    unbounded: Vec<u32>,
+    bounds: Aabb,
     materials: MaterialTable,
     lights: Vec<AnyLight>,
+    ambient: Rgb,
     background: AnyBackground,
+    has_transparency: bool,
 }
 
 impl World {
@@ -33,6 +92,62 @@ impl World {
         lights: Vec<AnyLight>,
         background: AnyBackground,
     ) -> Self {
-        Self { objects, materials, lights, background }
+        let boxes: Vec<Aabb> = objects.iter().map(|o| o.transform.aabb(&o.shape.bounds())).collect();
+        let numbers = 0..objects.len() as u32;
+        let (bounded, unbounded): (Vec<u32>, Vec<u32>) = numbers.partition(|i| boxes[*i as usize].is_finite());
+        let bounded_boxes: Vec<Aabb> = bounded.iter().map(|i| boxes[*i as usize]).collect();
+        let bvh = Bvh::build(&bounded_boxes, Quality::Balanced);
+        let order = bvh.order().iter().map(|position| bounded[*position as usize]);
+        let items = order.map(|object| Item::new(&objects[object as usize], object, &materials)).collect();
+        let has_transparency = objects.iter().any(|o| materials.is_transparent(o.material));
+        let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
+        let bounds = bounded_boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(*one));
+        let (bvh, lights) = (bvh, lights.into_iter().filter(|light| light.ambient().is_black()).collect());
+        Self { objects, items, bvh, unbounded, bounds, materials, lights, ambient, background, has_transparency }
+    }
+
+    /// The lights that shine from somewhere.
+    pub fn lights(&self) -> &[AnyLight] {
+        &self.lights
+    }
+
+    /// Light that is everywhere.
+    pub fn ambient(&self) -> Rgb {
+        self.ambient
+    }
+
+    /// Light that a ray sees which leaves the world.
+    pub fn background(&self, ray: &Ray) -> Rgb {
+        self.background.radiance(ray)
+    }
+
+    /// A box around all bounded objects; empty when there are none.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The numbers of the material at a vertex.
+    pub fn phong(&self, vertex: &Vertex) -> Phong {
+        self.materials.phong(vertex.material, &vertex.surface)
+    }
+
+    /// The surface where `ray` made `hit`.
+    pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
+        let object = &self.objects[hit.object as usize];
+        let surface = items::surface(object, ray, &hit.hit);
+        Vertex { surface, material: object.material, object: hit.object }
+    }
+
+    /// Counts for reports.
+    pub fn geometry(&self) -> Geometry {
+        Geometry {
+            shapes: self.objects.len(),
+            triangles: self.objects.iter().map(|o| o.shape.triangles()).sum(),
+            lights: self.lights.len(),
+            geometry_bytes: size_of::<Object>() * self.objects.len()
+                + size_of::<Item>() * self.items.len()
+                + self.objects.iter().map(|o| o.shape.heap_bytes()).sum::<usize>(),
+            bvh_bytes: self.bvh.bytes(),
+        }
     }
 }

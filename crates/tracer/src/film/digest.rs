@@ -1,0 +1,72 @@
+//! A hash and a mean of the film's linear pixels, taken row by row.
+
+use juggler_math::Rgb;
+
+/// Takes in the pixels of a film, row by row from the top.
+#[derive(Clone)]
+pub struct Digest {
+    hasher: blake3::Hasher,
+    sum: [f64; 3],
+    pixels: u64,
+}
+
+/// What a [`Digest`] comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Hash of size and pixels: BLAKE3, hexadecimal. Equal pictures have equal hashes, to the bit.
+    pub hash: String,
+    /// Mean of the pixels.
+    pub mean: [f64; 3],
+}
+
+impl Digest {
+    /// For a picture of this size.
+    pub fn new(width: u32, height: u32) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&width.to_le_bytes());
+        hasher.update(&height.to_le_bytes());
+        Self { hasher, sum: [0.0; 3], pixels: 0 }
+    }
+
+    /// The next pixels.
+    pub fn update(&mut self, pixels: &[Rgb]) {
+        for chunk in pixels.chunks(1024) {
+            let bytes: Vec<u8> = chunk.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
+            self.hasher.update(&bytes);
+        }
+        for pixel in pixels {
+            for (sum, channel) in self.sum.iter_mut().zip(pixel.to_array()) {
+                *sum += f64::from(channel);
+            }
+        }
+        self.pixels += pixels.len() as u64;
+    }
+
+    /// The result so far.
+    pub fn finish(&self) -> Summary {
+        let hash = self.hasher.finalize().to_hex().to_string();
+        Summary { hash, mean: self.sum.map(|sum| sum / self.pixels.max(1) as f64) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_sees_every_bit_and_no_cut() {
+        let pixels: Vec<Rgb> = (0..12).map(|i| Rgb::new(i as f32, 1.0, -0.0)).collect();
+        let hash = |width: u32, height: u32, parts: &[&[Rgb]]| {
+            let mut digest = Digest::new(width, height);
+            parts.iter().for_each(|part| digest.update(part));
+            digest.finish()
+        };
+        let whole = hash(4, 3, &[&pixels]);
+        assert_eq!(whole, hash(4, 3, &[&pixels[..4], &pixels[4..]]));
+        assert_ne!(whole.hash, hash(3, 4, &[&pixels]).hash);
+        let mut other = pixels.clone();
+        other[11].b = 0.0;
+        assert_ne!(whole.hash, hash(4, 3, &[&other]).hash, "-0 and 0 are different bits");
+        assert_eq!(whole.mean, [5.5, 1.0, 0.0]);
+    }
+}

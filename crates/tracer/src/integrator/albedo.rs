@@ -1,0 +1,31 @@
+//! The diffuse colour of what is seen, unlit.
+//!
+//! ```json
+//! {"albedo": {}}
+//! ```
+
+use super::{Emit, Integrator, Path};
+use crate::world::{Vertex, World};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The diffuse colour of what is seen, unlit; black where nothing is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Albedo {}
+
+impl Integrator for Albedo {
+    fn vertex(&self, world: &World, _path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
+        if let Some(vertex) = vertex {
+            emit.add(world.phong(vertex).diffuse);
+        }
+    }
+}
+
+#[cfg(test)]
+impl Albedo {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self {}]
+    }
+}

@@ -1,0 +1,45 @@
+//! How open each point is: white in the open, dark in corners.
+//!
+//! ```json
+//! {"ambient_occlusion": {"distance": 2}}
+//! ```
+
+use super::{Emit, Integrator, Path};
+use crate::world::{Vertex, World};
+use juggler_math::{Frame, Rgb, warp};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The cosine-weighted share of the hemisphere from which nothing within `distance` hides the sky.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct AmbientOcclusion {
+    /// How far to look; without it half of the scene's diagonal.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub distance: Option<f32>,
+}
+
+impl Integrator for AmbientOcclusion {
+    fn vertex(&self, world: &World, path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
+        let Some(vertex) = vertex else {
+            emit.add(Rgb::WHITE);
+            return;
+        };
+        let surface = &vertex.surface;
+        let facing = surface.normal.dot(path.ray.direction) < 0.0;
+        let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });
+        let mut sampler = path.sampler;
+        let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
+        let extent = world.bounds().extent();
+        let distance = self.distance.unwrap_or_else(|| 0.5 * extent.max(juggler_math::Vec3::ZERO).length());
+        emit.if_visible(surface.spawn(direction, path.ray.time).up_to(distance), Rgb::WHITE);
+    }
+}
+
+#[cfg(test)]
+impl AmbientOcclusion {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default()]
+    }
+}

@@ -1,0 +1,36 @@
+//! How far away what is seen is, in scene units along the ray.
+//!
+//! ```json
+//! {"depth": {"far": 10}}
+//! ```
+
+use super::{Emit, Integrator, Path};
+use crate::world::{Vertex, World};
+use juggler_math::Rgb;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Distance as a grey; 0 where nothing is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Depth {
+    /// The distance that is shown as 1. Without it the value is the distance itself, for EXR and PFM.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub far: Option<f32>,
+}
+
+impl Integrator for Depth {
+    fn vertex(&self, _world: &World, path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
+        if vertex.is_some() {
+            emit.add(Rgb::splat(path.ray.t_max / self.far.unwrap_or(1.0)));
+        }
+    }
+}
+
+#[cfg(test)]
+impl Depth {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { far: Some(10.0) }]
+    }
+}

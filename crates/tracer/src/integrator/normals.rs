@@ -1,0 +1,33 @@
+//! The direction in which what is seen faces: (n + 1) / 2 as a colour, world space.
+//!
+//! ```json
+//! {"normals": {}}
+//! ```
+
+use super::{Emit, Integrator, Path};
+use crate::world::{Vertex, World};
+use juggler_math::Rgb;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Shading normals as colours; black where nothing is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Normals {}
+
+impl Integrator for Normals {
+    fn vertex(&self, _world: &World, _path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
+        if let Some(vertex) = vertex {
+            let n = vertex.surface.shading_normal * 0.5 + 0.5;
+            emit.add(Rgb::new(n.x, n.y, n.z));
+        }
+    }
+}
+
+#[cfg(test)]
+impl Normals {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self {}]
+    }
+}

@@ -1,0 +1,174 @@
+//! Who renders which pixels when. Nothing here can change a bit of the picture.
+
+use super::wavefront::Engine;
+use super::{Control, Job, Rect, Tile, Work};
+use juggler_math::Rgb;
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+/// Pixels that are held in memory at once, at least a row of tiles of them.
+const BAND_PIXELS: u64 = 4 << 20;
+/// Samples of a tile that are worth a trip to the scheduler.
+const TILE_SAMPLES: u64 = 1 << 16;
+/// Edge of the largest tile.
+const MAX_TILE: u32 = 32;
+/// Edge of the smallest tile.
+const MIN_TILE: u32 = 4;
+
+/// How pixels are handed out to threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scheduler {
+    /// Tiles that idle threads steal from busy ones (ScalaBlitz's point).
+    #[default]
+    WorkStealing,
+    /// A shared counter hands out rows (the Juggler's way).
+    RowQueue,
+    /// Each thread gets one block of rows, and that is that.
+    StaticRows,
+}
+
+/// The render was cancelled before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the render was interrupted")]
+pub struct Stopped;
+
+/// Renders `region` with all samples on the threads of the current rayon pool, and hands the finished rows
+/// to `rows` from top to bottom, a band of whole rows at a time: only one band is held in memory.
+pub fn render<E: From<Stopped>>(
+    job: &Job,
+    region: Rect,
+    scheduler: Scheduler,
+    control: &Control,
+    mut rows: impl FnMut(&[Rgb]) -> Result<(), E>,
+) -> Result<(), E> {
+    let engines = Mutex::new(Vec::new());
+    for band in bands(region) {
+        let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
+        let draw = |pixels: Rect| {
+            let recycled = lock(&engines).pop();
+            let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
+            let tile = engine.render(&Work { pixels, samples: 0..job.samples }, control);
+            copy(job, &tile, &band, &mut lock(&film));
+            lock(&engines).push(engine);
+        };
+        match scheduler {
+            Scheduler::WorkStealing => steal(&band, job.samples, draw),
+            Scheduler::RowQueue => row_queue(&band, draw),
+            Scheduler::StaticRows => static_rows(&band, draw),
+        }
+        if control.is_cancelled() {
+            return Err(Stopped.into());
+        }
+        rows(&lock(&film))?;
+    }
+    Ok(())
+}
+
+/// A poisoned lock only says that another thread panicked, which rayon passes on anyway.
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+fn copy(job: &Job, tile: &Tile, band: &Rect, film: &mut [Rgb]) {
+    let pixels = job.finish(tile);
+    let width = tile.pixels.width as usize;
+    for (row, line) in pixels.chunks_exact(width).enumerate() {
+        let start = (tile.pixels.y - band.y) as usize + row;
+        let start = start * band.width as usize + (tile.pixels.x - band.x) as usize;
+        film[start..start + width].copy_from_slice(line);
+    }
+}
+
+/// Cuts a region into bands of whole rows that fit in memory.
+fn bands(region: Rect) -> impl Iterator<Item = Rect> {
+    let tile_rows = BAND_PIXELS / (u64::from(region.width.max(1)) * u64::from(MAX_TILE));
+    let height = (tile_rows.max(1) * u64::from(MAX_TILE)).min(u64::from(u32::MAX)) as u32;
+    let end = region.y + region.height;
+    (region.y..end).step_by(height as usize).map(move |y| Rect { y, height: height.min(end - y), ..region })
+}
+
+fn steal(band: &Rect, samples: u32, draw: impl Fn(Rect) + Sync) {
+    let edge = tile_edge(samples);
+    let columns: Vec<u32> = (0..band.width).step_by(edge as usize).collect();
+    let corners = (0..band.height).step_by(edge as usize).flat_map(|y| columns.iter().map(move |x| (*x, y)));
+    let tiles: Vec<Rect> = corners
+        .map(|(x, y)| Rect {
+            x: band.x + x,
+            y: band.y + y,
+            width: edge.min(band.width - x),
+            height: edge.min(band.height - y),
+        })
+        .collect();
+    tiles.into_par_iter().with_max_len(1).for_each(draw);
+}
+
+/// Small tiles when each pixel takes long, so that the last one does not keep everybody waiting.
+fn tile_edge(samples: u32) -> u32 {
+    let pixels = (TILE_SAMPLES / u64::from(samples.max(1))) as u32;
+    (pixels.isqrt().max(1).next_power_of_two()).clamp(MIN_TILE, MAX_TILE)
+}
+
+fn row_queue(band: &Rect, draw: impl Fn(Rect) + Sync) {
+    let next = AtomicU32::new(0);
+    rayon::broadcast(|_| {
+        loop {
+            let row = next.fetch_add(1, Relaxed);
+            if row >= band.height {
+                return;
+            }
+            draw(Rect { y: band.y + row, height: 1, ..*band });
+        }
+    });
+}
+
+fn static_rows(band: &Rect, draw: impl Fn(Rect) + Sync) {
+    rayon::broadcast(|thread| {
+        let part = |i: usize| (u64::from(band.height) * i as u64 / thread.num_threads() as u64) as u32;
+        let (first, end) = (part(thread.index()), part(thread.index() + 1));
+        for row in first..end {
+            draw(Rect { y: band.y + row, height: 1, ..*band });
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_cover_every_row_once_and_stay_small() {
+        let sizes = [(1, 1), (640, 360), (1920, 1080), (20_000, 20_000), (65_536, 3), (3, 65_536), (0, 0)];
+        for (width, height) in sizes {
+            let region = Rect { x: 2, y: 5, width, height };
+            let mut next = region.y;
+            for band in bands(region) {
+                assert_eq!((band.x, band.y, band.width), (2, next, width));
+                assert!(band.area() <= BAND_PIXELS.max(u64::from(width * MAX_TILE)));
+                next += band.height;
+            }
+            assert_eq!(next, region.y + height, "{width}x{height}");
+        }
+    }
+
+    #[test]
+    fn every_scheduler_draws_every_pixel_once() {
+        let band = Rect { x: 3, y: 7, width: 70, height: 41 };
+        let seen = |run: &dyn Fn(&(dyn Fn(Rect) + Sync))| {
+            let counts = Mutex::new(vec![0; band.area() as usize]);
+            run(&|tile: Rect| {
+                for y in tile.y..tile.y + tile.height {
+                    for x in tile.x..tile.x + tile.width {
+                        lock(&counts)[((y - band.y) * band.width + x - band.x) as usize] += 1;
+                    }
+                }
+            });
+            counts.into_inner().is_ok_and(|counts| counts.into_iter().all(|count| count == 1))
+        };
+        for samples in [1, 64, 4096] {
+            assert!(seen(&|draw| steal(&band, samples, draw)), "stealing, {samples} samples");
+        }
+        assert!(seen(&|draw| row_queue(&band, draw)), "row queue");
+        assert!(seen(&|draw| static_rows(&band, draw)), "static rows");
+    }
+}

@@ -1,0 +1,245 @@
+//! Rays in queues: camera rays of some pixels → nearest hits → what the integrator makes of them → shadow
+//! rays → the rays that go on, until none is left.
+//!
+//! Why the bits cannot depend on tiles: queues are in order of their slots (a slot is one sample of one
+//! pixel), and are only ever cut between slots; a slot whose own rays outgrow [`GROUP`] is cut in pieces of
+//! that size wherever it stands. So the order in which a sample's contributions are added follows from its
+//! own tree of rays alone. The same cuts bound the memory.
+
+use super::{Control, Job, Rays, Tile, Work};
+use crate::film::PixelSum;
+use crate::integrator::{Emit, Flight, Harvest, Path, Queue};
+use crate::sampler::Sampler;
+use crate::world::WorldHit;
+use juggler_bvh::PACKET;
+use juggler_math::{Rgb, UVec2, Vec2};
+use std::ops::Range;
+
+/// Samples in flight at once.
+const PASS: u64 = 1024;
+/// Rays of a segment, unless one slot alone has more.
+const SEGMENT: usize = 2048;
+/// Rays of one slot that are followed side by side.
+const GROUP: usize = 256;
+/// Waiting rays at which a segment is left for later, at the next slot.
+const WAITING: usize = 16_384;
+
+/// The buffers of one thread.
+pub struct Engine<'j> {
+    job: &'j Job<'j>,
+    hits: Vec<WorldHit>,
+    through: Vec<Rgb>,
+    harvest: Harvest,
+    stack: Vec<Queue>,
+    spare: Vec<Queue>,
+    rays: Rays,
+}
+
+impl<'j> Engine<'j> {
+    pub fn new(job: &'j Job<'j>) -> Self {
+        Self {
+            job,
+            hits: Vec::new(),
+            through: Vec::new(),
+            harvest: Harvest::default(),
+            stack: Vec::new(),
+            spare: Vec::new(),
+            rays: Rays::default(),
+        }
+    }
+
+    /// Renders one piece of work.
+    pub fn render(&mut self, work: &Work, control: &Control) -> Tile {
+        let mut sums = vec![PixelSum::default(); work.pixels.area() as usize];
+        let samples = u64::from(work.samples.end.saturating_sub(work.samples.start));
+        let end = work.pixels.area() * samples;
+        let mut first = 0;
+        while first < end && !control.is_cancelled() {
+            let slots = first..end.min(first + PASS);
+            let count = slots.end - slots.start;
+            self.pass(work, samples, slots.clone());
+            self.develop(work, samples, slots, &mut sums);
+            self.rays.camera += count;
+            control.add(count, &std::mem::take(&mut self.rays));
+            first += count;
+        }
+        Tile { pixels: work.pixels, sums }
+    }
+
+    /// Traces the samples `slots` to their ends.
+    fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>) {
+        self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lights().len());
+        let mut camera = self.spare.pop().unwrap_or_default();
+        self.expose(work, samples, slots, &mut camera);
+        self.stack.push(camera);
+        while let Some(queue) = self.stack.pop() {
+            self.segment(queue);
+        }
+    }
+
+    /// The camera's rays.
+    fn expose(&self, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+        let mut slot = 0;
+        let mut at = slots.start;
+        while at < slots.end {
+            let pixel = at / samples;
+            let column = work.pixels.x + (pixel % u64::from(work.pixels.width)) as u32;
+            let row = work.pixels.y + (pixel / u64::from(work.pixels.width)) as u32;
+            let stream = Sampler::new(self.job.pattern, self.job.seed, UVec2::new(column, row));
+            let last = slots.end.min((pixel + 1) * samples);
+            while at < last {
+                let index = work.samples.start + (at % samples) as u32;
+                self.camera_ray(Vec2::new(column as f32, row as f32), stream.sample(index), slot, queue);
+                slot += 1;
+                at += 1;
+            }
+        }
+    }
+
+    #[inline]
+    fn camera_ray(&self, corner: Vec2, mut sampler: Sampler, slot: u32, queue: &mut Queue) {
+        let place = sampler.next_2d();
+        let (film, weight) = if self.job.samples == 1 {
+            (corner + 0.5, 1.0)
+        } else {
+            let sample = self.job.filter.sample(place);
+            (corner + 0.5 + sample.offset, sample.weight)
+        };
+        let lens = if self.job.camera.needs_lens() { sampler.next_2d() } else { Vec2::splat(0.5) };
+        if let Some(ray) = self.job.camera.ray(film, lens, 0.0) {
+            queue.push(ray, Flight { weight: Rgb::splat(weight), slot, depth: 0, sampler: sampler.branch(0) });
+        }
+    }
+
+    /// Takes a queue one step further and stacks what comes of it, so that the first of it is next.
+    fn segment(&mut self, mut queue: Queue) {
+        self.nearest(&mut queue);
+        let done = self.shade(&queue);
+        self.shadows();
+        self.stack_rest(&queue, done);
+        self.stack_next();
+        queue.clear();
+        self.spare.push(queue);
+    }
+
+    fn nearest(&mut self, queue: &mut Queue) {
+        self.hits.resize(queue.len(), WorldHit::NONE);
+        let from_camera = queue.flights.first().is_some_and(|flight| flight.depth == 0);
+        if from_camera {
+            for (rays, hits) in queue.rays.chunks_mut(PACKET).zip(self.hits.chunks_mut(PACKET)) {
+                self.job.world.closest_packet(rays, hits);
+            }
+        } else {
+            self.rays.secondary += queue.len() as u64;
+            self.job.world.closest_batch(&mut queue.rays, &mut self.hits);
+        }
+    }
+
+    /// Hands each vertex to the integrator; stops between slots when too many rays wait. Returns how many
+    /// rays were done.
+    fn shade(&mut self, queue: &Queue) -> usize {
+        let world = self.job.world;
+        for i in 0..queue.len() {
+            let flight = &queue.flights[i];
+            let path =
+                Path { ray: queue.rays[i], weight: flight.weight, depth: flight.depth, sampler: flight.sampler };
+            let mut emit = Emit::new(&mut self.harvest, &path, flight.slot);
+            if self.hits[i].is_some() {
+                let vertex = world.vertex(&path.ray, &self.hits[i]);
+                self.job.integrator.vertex(world, &path, Some(&vertex), &mut emit);
+            } else {
+                self.job.integrator.vertex(world, &path, None, &mut emit);
+            }
+            let last_of_slot = queue.flights.get(i + 1).is_none_or(|next| next.slot != flight.slot);
+            if last_of_slot && self.harvest.next.len() + self.harvest.pending() > WAITING {
+                return i + 1;
+            }
+        }
+        queue.len()
+    }
+
+    /// Answers the shadow rays, light by light, and adds what comes through.
+    fn shadows(&mut self) {
+        let Harvest { radiance, shadows, .. } = &mut self.harvest;
+        let last = shadows.len().saturating_sub(1);
+        for (number, queue) in shadows.iter_mut().enumerate() {
+            self.rays.shadow += queue.rays.len() as u64;
+            self.through.resize(queue.rays.len(), Rgb::BLACK);
+            if number < last {
+                for (rays, through) in queue.rays.chunks(PACKET).zip(self.through.chunks_mut(PACKET)) {
+                    self.job.world.transmittance_packet(rays, through);
+                }
+            } else {
+                self.job.world.transmittance_batch(&queue.rays, &mut self.through);
+            }
+            for ((slot, arriving), through) in queue.slots.iter().zip(&queue.radiance).zip(&self.through) {
+                radiance[*slot as usize] += *arriving * *through;
+            }
+            queue.rays.clear();
+            queue.radiance.clear();
+            queue.slots.clear();
+        }
+    }
+
+    /// The rays of a segment that was left early.
+    fn stack_rest(&mut self, queue: &Queue, done: usize) {
+        if done < queue.len() {
+            let mut rest = self.spare.pop().unwrap_or_default();
+            for i in done..queue.len() {
+                // The hits are found again: a ray keeps no memory of having been traced.
+                let ray = juggler_math::Ray { t_max: f32::INFINITY, ..queue.rays[i] };
+                rest.push(ray, queue.flights[i]);
+            }
+            self.stack.push(rest);
+        }
+    }
+
+    /// The rays that go on, cut into segments, the first on top.
+    fn stack_next(&mut self) {
+        if self.harvest.next.len() == 0 {
+            return;
+        }
+        let next = std::mem::replace(&mut self.harvest.next, self.spare.pop().unwrap_or_default());
+        for range in cut(&next).into_iter().rev() {
+            let mut queue = self.spare.pop().unwrap_or_default();
+            queue.rays.extend_from_slice(&next.rays[range.clone()]);
+            queue.flights.extend_from_slice(&next.flights[range]);
+            self.stack.push(queue);
+        }
+        let mut next = next;
+        next.clear();
+        self.spare.push(next);
+    }
+
+    /// Adds the finished samples to their pixels.
+    fn develop(&mut self, work: &Work, samples: u64, slots: Range<u64>, sums: &mut [PixelSum]) {
+        for (at, radiance) in slots.zip(&self.harvest.radiance) {
+            let finite = radiance.is_finite();
+            self.rays.not_finite += u64::from(!finite);
+            let radiance = if finite { *radiance } else { Rgb::BLACK };
+            sums[(at / samples) as usize].add(work.samples.start + (at % samples) as u32, radiance);
+        }
+    }
+}
+
+/// Cuts a queue between slots into segments of at most [`SEGMENT`] rays; a slot of more than [`GROUP`] rays
+/// becomes segments of its own.
+fn cut(queue: &Queue) -> Vec<Range<usize>> {
+    let mut ranges = Vec::new();
+    let (mut start, mut at) = (0, 0);
+    for group in queue.flights.chunk_by(|a, b| a.slot == b.slot) {
+        let end = at + group.len();
+        if group.len() > GROUP {
+            ranges.push(start..at);
+            ranges.extend((at..end).step_by(GROUP).map(|piece| piece..end.min(piece + GROUP)));
+            start = end;
+        } else if end - start > SEGMENT {
+            ranges.push(start..at);
+            start = at;
+        }
+        at = end;
+    }
+    ranges.push(start..at);
+    ranges.retain(|range| !range.is_empty());
+    ranges
+}

@@ -1,0 +1,86 @@
+//! Stratified jitter: one point at random in each cell of a grid (Cook 1986), as the Juggler did.
+//!
+//! ```json
+//! {"stratified": {"side": 8}}
+//! ```
+
+use super::{Pattern, Spread};
+use juggler_math::{Vec2, hash};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One point at random in each cell of an n × n grid.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Stratified {
+    /// Cells along an edge of the grid; n² samples fill it, more begin another. 0 takes the largest grid
+    /// that the number of samples fills.
+    #[schemars(range(min = 0, max = 4096))]
+    pub side: u32,
+}
+
+impl Spread for Stratified {
+    fn pattern(&self, samples: u32) -> Pattern {
+        let side = if self.side == 0 { samples.isqrt() } else { self.side };
+        Pattern::Stratified { side: side.clamp(1, 4096) }
+    }
+}
+
+/// Point `index` of the stream `seed`. The first dimension of a sample takes the cells `in_order`, every
+/// other one in an order of its own, so that a place on the film does not decide a place on a light.
+#[inline]
+pub fn point(index: u32, in_order: bool, seed: u32, side: u32) -> Vec2 {
+    let cells = side * side;
+    let (set, cell) = (index / cells, index % cells);
+    let cell = if in_order { cell } else { permutation(cell, cells, hash::combine(seed, set)) };
+    let jitter = hash::combine(seed, index);
+    let jitter = Vec2::new(hash::unit_f32(jitter), hash::unit_f32(hash::mix(jitter ^ 0x68bc_21eb)));
+    let corner = Vec2::new((cell % side) as f32, (cell / side) as f32);
+    ((corner + jitter) / side as f32).min(Vec2::splat(1.0 - f32::EPSILON / 2.0))
+}
+
+/// Place `i` of a random permutation of `0..length` (Kensler, Correlated Multi-Jittered Sampling, 2013):
+/// an invertible hash on the next power of two, walked until it falls inside.
+fn permutation(mut i: u32, length: u32, seed: u32) -> u32 {
+    let mask = length.next_power_of_two().wrapping_sub(1);
+    loop {
+        i ^= seed;
+        i = i.wrapping_mul(0xe170_893d) ^ seed >> 16;
+        i ^= (i & mask) >> 4;
+        i = (i ^ seed >> 8).wrapping_mul(0x0929_eb3f) ^ seed >> 23;
+        i ^= (i & mask) >> 1;
+        i = i.wrapping_mul(1 | seed >> 27).wrapping_mul(0x6935_fa69);
+        i ^= (i & mask) >> 11;
+        i = i.wrapping_mul(0x74dc_b303);
+        i ^= (i & mask) >> 2;
+        i = i.wrapping_mul(0x9e50_1cc3);
+        i ^= (i & mask) >> 2;
+        i = i.wrapping_mul(0xc860_a3df) & mask;
+        i ^= i >> 5;
+        if i < length {
+            return (i.wrapping_add(seed)) % length;
+        }
+    }
+}
+
+#[cfg(test)]
+impl Stratified {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self { side: 0 }, Self { side: 4 }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn permutation_hits_every_place_once() {
+        for (length, seed) in [(1, 5), (2, 9), (9, 3), (64, 77), (100, 1)] {
+            let mut places: Vec<u32> = (0..length).map(|i| permutation(i, length, hash::mix(seed))).collect();
+            places.sort_unstable();
+            assert!(places.into_iter().eq(0..length), "length {length}");
+        }
+    }
+}
