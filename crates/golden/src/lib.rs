@@ -1,1 +1,1 @@
-//! golden
+//! Tests of the whole; the library itself is empty.

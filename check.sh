@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Everything that must hold before a change lands; CI runs exactly this. Cheap checks first.
+#   ./check.sh          all of it
+#   ./check.sh quick    without the release build
+set -euo pipefail
+cd "$(dirname "$0")"
+mode=${1:-all}
+case "$mode" in all | quick) ;; *) echo "usage: ./check.sh [quick]" >&2; exit 2 ;; esac
+
+step() { printf '\n== %s\n' "$*"; }
+
+step "spelling"
+if command -v typos >/dev/null; then typos; else echo "typos is not installed: skipped (pip install typos)"; fi
+
+step "format"
+cargo fmt --all --check
+
+step "lints"
+cargo clippy --workspace --all-targets --locked -- -D warnings
+
+step "documentation"
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+
+step "tests: units, contracts, hostile input, tree, licences, schema, documentation"
+cargo test --workspace --locked
+
+if [ "$mode" = all ]; then
+  step "tests: pictures and hashes again, optimised: debug and release must agree to the bit"
+  cargo test --release --locked -p juggler-golden
+fi
+
+step "all checks passed"

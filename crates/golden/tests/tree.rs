@@ -1,0 +1,69 @@
+//! The tree keeps its own rules: short files, and only licences that anybody may use.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Lines a source file may have, tests included.
+const MAX_LINES: usize = 400;
+
+/// Licences that the project's users can live with (SPDX; an expression needs one fit alternative).
+const LICENCES: &[&str] = &[
+    "MIT", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "ISC", "Zlib", "0BSD", "CC0-1.0", "Unlicense", "Unicode-3.0",
+    "BSL-1.0", "MIT-0", "IJG", "Apache-2.0 WITH LLVM-exception",
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries
+        .flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] })
+        .filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
+        .collect()
+}
+
+#[test]
+fn no_source_file_is_long() {
+    let files = rust_files(&root().join("crates"));
+    assert!(files.len() > 50, "the source was not found");
+    let long: Vec<String> = files
+        .iter()
+        .map(|path| (path, std::fs::read_to_string(path).unwrap().lines().count()))
+        .filter(|(_, lines)| *lines > MAX_LINES)
+        .map(|(path, lines)| format!("{}: {lines} lines", path.display()))
+        .collect();
+    assert!(long.is_empty(), "over {MAX_LINES} lines:\n{}", long.join("\n"));
+}
+
+#[test]
+fn every_dependency_has_a_licence_that_fits() {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked", "--offline"])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    assert!(packages.len() > 20);
+    let unfit: Vec<String> = packages
+        .iter()
+        .filter(|package| !fits(package["license"].as_str().unwrap_or_default()))
+        .map(|package| format!("{} {}: {}", package["name"], package["version"], package["license"]))
+        .collect();
+    assert!(unfit.is_empty(), "licences that are not on the list:\n{}", unfit.join("\n"));
+}
+
+/// Whether an SPDX expression can be met: of alternatives one, of requirements all.
+fn fits(expression: &str) -> bool {
+    let expression = expression.replace('/', " OR ").replace(['(', ')'], " ");
+    expression.split(" OR ").any(|all| all.split(" AND ").all(|one| LICENCES.contains(&one.trim())))
+}
+
+#[test]
+fn the_licence_check_can_fail() {
+    assert!(fits("MIT OR GPL-3.0-only") && fits("MIT/Apache-2.0") && fits("MIT AND ISC"));
+    assert!(!fits("GPL-3.0-only") && !fits("MIT AND AGPL-3.0-only") && !fits(""));
+}
