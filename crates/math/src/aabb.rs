@@ -97,3 +97,95 @@ impl Aabb {
         (enter <= leave).then_some((enter, leave))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close};
+
+    fn random_box(random: &mut Random) -> Aabb {
+        let flat = random.below(4);
+        let (a, mut b) = (random.point(3.0), random.point(3.0));
+        if flat < 3 {
+            b[flat] = a[flat];
+        }
+        Aabb::from_points([a, b])
+    }
+
+    fn random_ray(random: &mut Random) -> Ray {
+        let mut ray = random.ray(5.0);
+        for axis in 0..3 {
+            if random.below(6) == 0 {
+                ray.direction[axis] = if random.below(2) == 0 { 0.0 } else { -0.0 };
+            }
+        }
+        if ray.direction == Vec3::ZERO { Ray::new(ray.origin, Vec3::X) } else { ray }
+    }
+
+    /// Slabs in f64, one after the other, without reciprocals.
+    fn reference(aabb: &Aabb, ray: &Ray, grow: f64) -> Option<(f64, f64)> {
+        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+            let (low, high) = (f64::from(aabb.min[axis]) - grow, f64::from(aabb.max[axis]) + grow);
+            if d == 0.0 {
+                if o < low || o > high {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((low - o) / d, (high - o) / d);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        (enter <= leave).then_some((enter, leave))
+    }
+
+    #[test]
+    fn clip_never_loses_a_hit_and_seldom_invents_one() {
+        let mut random = Random::new(81);
+        let mut hits = 0;
+        for _ in 0..100_000 {
+            let (aabb, ray) = (random_box(&mut random), random_ray(&mut random));
+            let clipped = aabb.clip(&ray);
+            if reference(&aabb, &ray, 0.0).is_some() {
+                let (near, far) = clipped.unwrap_or_else(|| panic!("{aabb:?} lost {ray:?}"));
+                let truth = reference(&aabb, &ray, 0.0).unwrap();
+                assert!(
+                    close(near, truth.0 as f32, 1e-5) && (far == truth.1 as f32 || close(far, truth.1 as f32, 1e-5))
+                );
+                hits += 1;
+            } else if clipped.is_some() {
+                assert!(reference(&aabb, &ray, 1e-5).is_some(), "{aabb:?} invented {ray:?}");
+            }
+        }
+        assert!(hits > 1_000, "{hits}");
+    }
+
+    #[test]
+    fn clip_keeps_to_the_ray_and_copes_with_planes_through_the_origin() {
+        let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+        let ray = Ray::new(Vec3::new(-1.0, 0.0, 0.5), Vec3::X);
+        let (near, far) = unit.clip(&ray).expect("a ray in a face touches the box");
+        assert!(near == 1.0 && close(far, 2.0, 1e-6));
+        assert_eq!(unit.clip(&ray.up_to(0.5)), None);
+        assert_eq!(unit.clip(&Ray { t_min: 1.5, ..ray }).map(|r| r.0), Some(1.5));
+        assert_eq!(Aabb::EMPTY.clip(&ray), None);
+        assert_eq!(Aabb::INFINITE.clip(&ray), Some((0.0, f32::INFINITY)));
+    }
+
+    #[test]
+    fn boxes_hold_what_they_are_made_of() {
+        let mut random = Random::new(82);
+        for _ in 0..200 {
+            let points: Vec<Vec3> = (0..5).map(|_| random.point(10.0)).collect();
+            let aabb = Aabb::from_points(points.iter().copied());
+            assert!(points.iter().chain(&aabb.corners()).all(|&p| aabb.contains(p)) && aabb.contains(aabb.center()));
+            assert!(!aabb.contains(aabb.max + 0.1) && aabb.grown(0.2).contains(aabb.max + 0.1));
+            assert_eq!(aabb.union(Aabb::EMPTY), aabb);
+            assert_eq!(Aabb::from_points(aabb.corners()), aabb);
+        }
+        assert!(Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_finite() && !Aabb::INFINITE.is_finite());
+        assert_eq!((Aabb::EMPTY.area(), Aabb { min: Vec3::ZERO, max: Vec3::new(1.0, 2.0, 3.0) }.area()), (0.0, 22.0));
+    }
+}

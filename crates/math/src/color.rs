@@ -1,5 +1,8 @@
 //! Linear RGB (primaries and white of sRGB) and the sRGB curve.
 
+mod json;
+
+use crate::fun;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
 
 /// Linear light in three channels; scene-referred, so values above 1 are ordinary.
@@ -114,68 +117,92 @@ impl Mul<f32> for Rgb {
 impl Div<f32> for Rgb {
     type Output = Self;
     fn div(self, s: f32) -> Self {
-        self * (1.0 / s)
+        Self::new(self.r / s, self.g / s, self.b / s)
     }
 }
 
-/// Linear value → sRGB-encoded value, both 0..1 (IEC 61966-2-1); values outside are clamped.
+/// Linear value → sRGB-encoded value, both 0..1 (IEC 61966-2-1); values outside are clamped. In double
+/// precision, since 1.055 - 0.055 is not 1 in single.
 pub fn srgb_encode(linear: f32) -> f32 {
-    let v = linear.clamp(0.0, 1.0);
-    if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * crate::fun::powf(v, 1.0 / 2.4) - 0.055 }
+    let v = f64::from(linear.clamp(0.0, 1.0));
+    (if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * fun::pow_f64(v, 1.0 / 2.4) - 0.055 }) as f32
 }
 
 /// sRGB-encoded value → linear value, both 0..1; values outside are clamped.
 pub fn srgb_decode(encoded: f32) -> f32 {
-    let v = encoded.clamp(0.0, 1.0);
-    if v <= 0.040_45 { v / 12.92 } else { crate::fun::powf((v + 0.055) / 1.055, 2.4) }
-}
-
-/// How a colour is written: `[r, g, b]` in linear light, `"#rrggbb"` in sRGB, or one number for a grey.
-#[derive(serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(untagged)]
-#[schemars(rename = "Color")]
-enum Written {
-    /// Linear red, green, blue; 0 to 1 for reflectances, any size for light.
-    Channels([f32; 3]),
-    /// The same value in all three channels.
-    Grey(f32),
-    /// sRGB as `#rrggbb`.
-    Hex(#[schemars(regex(pattern = r"^#[0-9a-fA-F]{6}$"))] String),
-}
-
-impl serde::Serialize for Rgb {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.to_array().serialize(serializer)
-    }
-}
-
-impl<'de> serde::Deserialize<'de> for Rgb {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match Written::deserialize(deserializer)? {
-            Written::Channels(channels) => Ok(channels.into()),
-            Written::Grey(v) => Ok(Self::splat(v)),
-            Written::Hex(text) => {
-                Self::from_hex(&text).ok_or_else(|| serde::de::Error::custom("a colour is written `#rrggbb`"))
-            }
-        }
-    }
-}
-
-impl schemars::JsonSchema for Rgb {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "Color".into()
-    }
-    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        Written::json_schema(generator)
-    }
+    let v = f64::from(encoded.clamp(0.0, 1.0));
+    (if v <= 0.040_45 { v / 12.92 } else { fun::pow_f64((v + 0.055) / 1.055, 2.4) }) as f32
 }
 
 impl Rgb {
     /// From `#rrggbb` in sRGB; `None` for any other text.
     pub fn from_hex(text: &str) -> Option<Self> {
-        let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii())?;
+        let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
         let value = u32::from_str_radix(digits, 16).ok()?;
         let channel = |shift: u32| srgb_decode((value >> shift & 0xff) as f32 / 255.0);
         Some(Self::new(channel(16), channel(8), channel(0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_agrees_with_the_standard() {
+        // Values of IEC 61966-2-1's own formula, computed with 50 digits.
+        for (encoded, linear) in [
+            (10.0 / 255.0, 0.003_035_27),
+            (11.0 / 255.0, 0.003_346_536),
+            (0.5, 0.214_041_14),
+            (128.0 / 255.0, 0.215_860_5),
+            (1.0, 1.0),
+        ] {
+            assert!((srgb_decode(encoded) - linear).abs() < 1e-7, "{encoded}");
+            assert!((srgb_encode(linear) - encoded).abs() < 1e-6, "{linear}");
+        }
+        assert!((srgb_encode(0.18) - 0.461_356_13).abs() < 1e-6);
+        assert_eq!((srgb_encode(-1.0), srgb_encode(7.0), srgb_decode(-1.0), srgb_decode(7.0)), (0.0, 1.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn all_eight_and_sixteen_bit_codes_survive_the_round_trip() {
+        for limit in [255.0, 65_535.0] {
+            for code in 0..=limit as u32 {
+                let encoded = code as f32 / limit;
+                assert_eq!((srgb_encode(srgb_decode(encoded)) * limit).round() as u32, code);
+            }
+        }
+    }
+
+    #[test]
+    fn srgb_rises_without_a_step_backwards() {
+        let mut last = -1.0;
+        for i in 0..=100_000 {
+            let v = srgb_encode(i as f32 * 1e-5);
+            assert!(v > last, "{i}");
+            last = v;
+        }
+    }
+
+    #[test]
+    fn hexadecimal_colours() {
+        assert_eq!(Rgb::from_hex("#ff0000"), Some(Rgb::new(1.0, 0.0, 0.0)));
+        assert_eq!(Rgb::from_hex("#00800A").map(|c| c.g), Some(srgb_decode(128.0 / 255.0)));
+        for wrong in ["", "#", "ff0000", "#ff000", "#ff00000", "#gg0000", "#+f0000", "#ffé00", "#ff 000"] {
+            assert_eq!(Rgb::from_hex(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn arithmetic_goes_by_channel_and_division_is_exact() {
+        let (a, b) = (Rgb::new(0.5, 1.0, 2.0), Rgb::new(4.0, 0.25, 1.0));
+        assert_eq!((a + b, a - b, a * b), ([4.5, 1.25, 3.0].into(), [-3.5, 0.75, 1.0].into(), [2.0, 0.25, 2.0].into()));
+        assert_eq!(a.lerp(b, 0.5).to_array(), [2.25, 0.625, 1.5]);
+        assert_eq!((a.max_channel(), Rgb::WHITE.luminance()), (2.0, 1.0));
+        // The mean of n equal colours is that colour.
+        for n in 1..1000 {
+            assert_eq!(Rgb::splat(n as f32 * 0.75) / n as f32, Rgb::splat(0.75));
+        }
     }
 }

@@ -36,3 +36,32 @@ impl Frame {
         Vec3::new(v.dot(self.tangent), v.dot(self.bitangent), v.dot(self.normal))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close3};
+
+    #[test]
+    fn frames_are_orthonormal_and_right_handed() {
+        let mut random = Random::new(51);
+        let poles = [Vec3::Z, -Vec3::Z, Vec3::X, Vec3::Y, Vec3::new(0.0, 1e-20, -1.0), Vec3::new(3e-4, 0.0, -1.0)];
+        for n in (0..10_000).map(|_| random.unit_vector()).chain(poles) {
+            let frame = Frame::around(n);
+            let (t, b) = (frame.tangent, frame.bitangent);
+            assert!(t.is_normalized() && b.is_normalized(), "{n}");
+            assert!(t.dot(b).abs() < 1e-6 && t.dot(n).abs() < 1e-6 && b.dot(n).abs() < 1e-6, "{n}");
+            assert!(close3(t.cross(b), n, 1e-6), "{n}");
+        }
+    }
+
+    #[test]
+    fn local_and_world_are_inverse() {
+        let mut random = Random::new(52);
+        for _ in 0..1000 {
+            let (frame, v) = (Frame::around(random.unit_vector()), random.point(10.0));
+            assert!(close3(frame.to_local(frame.to_world(v)), v, 1e-6));
+            assert!(close3(frame.to_world(Vec3::Z), frame.normal, 0.0));
+        }
+    }
+}

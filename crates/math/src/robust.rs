@@ -29,3 +29,49 @@ pub fn offset_origin(point: Vec3, error: f32, normal: Vec3, direction: Vec3) -> 
     };
     Vec3::new(push(moved.x, offset.x), push(moved.y, offset.y), push(moved.z, offset.z))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn follow_up_rays_start_beyond_the_error_on_the_right_side() {
+        let mut random = Random::new(71);
+        for scale in [1e-3, 1.0, 1e4] {
+            for _ in 0..5_000 {
+                let (point, normal, direction) = (random.point(scale), random.unit_vector(), random.unit_vector());
+                let error = random.range(0.0, 1e-5) * scale;
+                let moved = offset_origin(point, error, normal, direction);
+                // The true surface may lie anywhere in the error box: its farthest corner along the normal.
+                let side = f64::from(direction.dot(normal)).signum();
+                let distance = (moved.as_dvec3() - point.as_dvec3()).dot(normal.as_dvec3()) * side;
+                let n = normal.abs().as_dvec3();
+                assert!(distance >= f64::from(error) * (n.x + n.y + n.z) * (1.0 - 1e-6), "{point} {normal}");
+                // ...but not much farther: light must not leak through thin walls.
+                let far = 3.0 * (f64::from(error) + f64::from(scale) * f64::from(f32::EPSILON));
+                assert!(distance <= far, "{distance} {far}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_error_means_no_move() {
+        let p = Vec3::new(1.0, 2.0, 3.0);
+        assert_eq!(offset_origin(p, 0.0, Vec3::Y, Vec3::Y), p);
+    }
+
+    #[test]
+    fn gamma_bounds_a_chain_of_rounded_products() {
+        let mut random = Random::new(72);
+        for _ in 0..1000 {
+            let (mut single, mut exact) = (1f32, 1f64);
+            for _ in 0..20 {
+                let factor = random.range(0.5, 2.0);
+                single *= factor;
+                exact *= f64::from(factor);
+            }
+            assert!((f64::from(single) / exact - 1.0).abs() <= f64::from(gamma(20)));
+        }
+    }
+}

@@ -107,7 +107,8 @@ impl Transform {
     pub fn uniform_scale(&self) -> Option<f32> {
         let [x, y, z] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis];
         let squared = x.length_squared();
-        let tolerance = 1e-6 * squared;
+        // Composed rotations of single precision are even up to a few units in the last place.
+        let tolerance = 1e-5 * squared;
         let even =
             (y.length_squared() - squared).abs() <= tolerance && (z.length_squared() - squared).abs() <= tolerance;
         let square = x.dot(y).abs() <= tolerance && y.dot(z).abs() <= tolerance && z.dot(x).abs() <= tolerance;
@@ -135,4 +136,116 @@ fn inverse(m: &Mat3) -> Option<Mat3> {
     let inverse = glam::DMat3::from_cols(rows[0], rows[1], rows[2]).transpose() * (1.0 / determinant);
     let inverse = inverse.as_mat3();
     inverse.is_finite().then_some(inverse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close, close3};
+
+    fn samples() -> Vec<Transform> {
+        let mut random = Random::new(91);
+        let mirror = Transform::scale(Vec3::new(-1.0, 1.0, 1.0)).unwrap();
+        let tiny = Transform::scale(Vec3::splat(1e-4)).unwrap();
+        let uneven = Transform::scale(Vec3::new(1e-4, 1.0, 30.0)).unwrap();
+        let any: Vec<Transform> = (0..50).map(|_| random.transform()).collect();
+        any.iter().flat_map(|t| [*t, t.then(&mirror), tiny.then(t), uneven.then(t)]).collect()
+    }
+
+    #[test]
+    fn there_and_back_again() {
+        let mut random = Random::new(92);
+        for t in samples() {
+            for _ in 0..20 {
+                let p = random.point(3.0);
+                let stretch_back = t.inverse_matrix().to_cols_array().iter().map(|v| v * v).sum::<f32>().sqrt();
+                let condition = t.max_stretch() * stretch_back;
+                assert!(close3(t.vector_to_local(t.vector(p)), p, 4e-7 * condition), "{t:?}");
+                // A point also suffers from the rounding of the translation, which a tiny scale magnifies.
+                let tolerance = 4e-7 * (condition + t.origin().length() * stretch_back);
+                assert!(close3(t.point_to_local(t.point(p)), p, tolerance), "{t:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn rays_keep_their_distances() {
+        let mut random = Random::new(93);
+        for t in (0..200).map(|_| random.transform()).collect::<Vec<_>>() {
+            let ray = Ray { t_min: 0.5, t_max: 9.0, time: 0.25, ..random.ray(5.0) };
+            let local = t.ray_to_local(&ray);
+            assert!(close3(t.point(local.at(2.5)), ray.at(2.5), 1e-4));
+            assert_eq!((local.t_min, local.t_max, local.time), (0.5, 9.0, 0.25));
+        }
+    }
+
+    #[test]
+    fn normals_stay_perpendicular_and_outside() {
+        let mut random = Random::new(94);
+        for t in samples() {
+            let (n, v) = (random.unit_vector(), random.unit_vector());
+            let (tangent, world) = (t.vector(n.cross(v)).normalize(), t.normal(n));
+            assert!(close(world.length(), 1.0, 1e-6) && world.dot(tangent).abs() < 1e-3, "{t:?}");
+            assert!(world.dot(t.vector(n)) > 0.0, "{t:?}");
+        }
+    }
+
+    #[test]
+    fn composition_is_one_after_the_other() {
+        let mut random = Random::new(95);
+        for _ in 0..200 {
+            let (a, b, p) = (random.transform(), random.transform(), random.point(3.0));
+            assert!(close3(a.then(&b).point(p), b.point(a.point(p)), 1e-5));
+            assert!(close3(a.then(&b).point_to_local(p), a.point_to_local(b.point_to_local(p)), 1e-3));
+        }
+    }
+
+    #[test]
+    fn rotations_are_right_handed_and_rigid() {
+        let quarter = Transform::rotation(Vec3::Y * 3.0, std::f32::consts::FRAC_PI_2).unwrap();
+        assert!(close3(quarter.point(Vec3::Z), Vec3::X, 1e-6) && close3(quarter.point(Vec3::X), -Vec3::Z, 1e-6));
+        let mut random = Random::new(96);
+        for _ in 0..1000 {
+            let turn = random.rotation().then(&random.rotation());
+            assert!(close(turn.uniform_scale().expect("a rotation is even"), 1.0, 1e-6));
+        }
+    }
+
+    #[test]
+    fn uniform_scales_are_told_from_others() {
+        let mut random = Random::new(97);
+        for factor in [1e-4, -0.5, 1.0, 700.0] {
+            let t = Transform::scale(Vec3::splat(factor)).unwrap().then(&random.rotation());
+            assert!(close(t.uniform_scale().unwrap() / factor.abs(), 1.0, 1e-5));
+        }
+        assert_eq!(Transform::scale(Vec3::new(1.0, 1.0, 1.001)).unwrap().uniform_scale(), None);
+        for t in samples() {
+            let v = random.unit_vector();
+            assert!(t.vector(v).length() <= t.max_stretch() * 1.000_001);
+        }
+    }
+
+    #[test]
+    fn boxes_hold_the_images_of_their_points() {
+        let mut random = Random::new(98);
+        let local = Aabb { min: Vec3::new(-1.0, 0.0, 2.0), max: Vec3::new(1.0, 0.5, 2.5) };
+        for t in samples() {
+            let inside = local.min + local.extent() * random.vec3();
+            assert!(t.aabb(&local).grown(1e-5).contains(t.point(inside)));
+        }
+        assert_eq!(random.transform().aabb(&Aabb::INFINITE), Aabb::INFINITE);
+        assert_eq!(random.transform().aabb(&Aabb::EMPTY), Aabb::EMPTY);
+    }
+
+    #[test]
+    fn what_cannot_be_inverted_is_refused() {
+        let flat = Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::X + Vec3::Y);
+        assert_eq!(Transform::new(flat, Vec3::ZERO), None);
+        assert_eq!(Transform::scale(Vec3::new(1.0, 0.0, 1.0)), None);
+        assert_eq!(Transform::scale(Vec3::splat(1e-39)), None);
+        assert_eq!(Transform::scale(Vec3::new(f32::NAN, 1.0, 1.0)), None);
+        assert_eq!(Transform::new(Mat3::IDENTITY, Vec3::splat(f32::INFINITY)), None);
+        assert_eq!(Transform::rotation(Vec3::ZERO, 1.0), None);
+        assert!(Transform::scale(Vec3::splat(1e-12)).is_some());
+    }
 }

@@ -1,0 +1,116 @@
+//! How a colour is written in JSON: `[r, g, b]` in linear light, `"#rrggbb"` in sRGB, or one number for a grey.
+
+use super::Rgb;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+
+/// The schema's view of a colour.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Color")]
+#[allow(dead_code, reason = "only its schema is used")]
+enum Written {
+    /// Linear red, green, blue; 0 to 1 for reflectances, any size for light.
+    Channels([f32; 3]),
+    /// The same value in all three channels.
+    Grey(f32),
+    /// sRGB as `#rrggbb`.
+    Hex(#[schemars(regex(pattern = r"^#[0-9a-fA-F]{6}$"))] String),
+}
+
+impl Serialize for Rgb {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_array().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Rgb {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for Rgb {
+    fn schema_name() -> Cow<'static, str> {
+        "Color".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Written::json_schema(generator)
+    }
+}
+
+struct Reader;
+
+impl<'de> Visitor<'de> for Reader {
+    type Value = Rgb;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a colour: linear [r, g, b], sRGB \"#rrggbb\", or one number for a grey")
+    }
+
+    fn visit_f64<E: Error>(self, v: f64) -> Result<Rgb, E> {
+        Ok(Rgb::splat(v as f32))
+    }
+
+    fn visit_i64<E: Error>(self, v: i64) -> Result<Rgb, E> {
+        Ok(Rgb::splat(v as f32))
+    }
+
+    fn visit_u64<E: Error>(self, v: u64) -> Result<Rgb, E> {
+        Ok(Rgb::splat(v as f32))
+    }
+
+    fn visit_str<E: Error>(self, v: &str) -> Result<Rgb, E> {
+        Rgb::from_hex(v).ok_or_else(|| E::custom(format!("`{v}` is no colour, which is written `#rrggbb`")))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<Rgb, A::Error> {
+        let mut channels = [0f32; 3];
+        for (i, channel) in channels.iter_mut().enumerate() {
+            *channel = values.next_element()?.ok_or_else(|| A::Error::invalid_length(i, &self))?;
+        }
+        match values.next_element::<IgnoredAny>()? {
+            None => Ok(channels.into()),
+            Some(_) => Err(A::Error::invalid_length(4, &self)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Rgb, String> {
+        serde_json::from_str(text).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn the_three_ways_to_write_a_colour() {
+        assert_eq!(read("[0.1, 2, 3e1]"), Ok(Rgb::new(0.1, 2.0, 30.0)));
+        assert_eq!(read("0.5"), Ok(Rgb::splat(0.5)));
+        assert_eq!(read("1"), Ok(Rgb::WHITE));
+        assert_eq!(read("-1"), Ok(Rgb::splat(-1.0)));
+        assert_eq!(read("\"#ff0000\""), Ok(Rgb::new(1.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let mut random = crate::testing::Random::new(41);
+        for _ in 0..1000 {
+            let color = random.rgb() * random.range(0.0, 1e6);
+            assert_eq!(read(&serde_json::to_string(&color).unwrap()), Ok(color));
+        }
+    }
+
+    #[test]
+    fn errors_say_what_a_colour_is() {
+        for wrong in ["true", "{}", "[1, 2]", "[1, 2, 3, 4]"] {
+            assert!(read(wrong).unwrap_err().contains("linear [r, g, b]"), "{wrong}");
+        }
+        assert!(read("\"red\"").unwrap_err().contains("`red` is no colour"));
+        assert!(read("[1, \"a\", 2]").unwrap_err().contains("f32"));
+    }
+}
