@@ -2,6 +2,7 @@
 
 use juggler_math::Rgb;
 
+pub mod cone;
 pub mod fresnel;
 
 /// How a highlight is weighted.
@@ -22,6 +23,11 @@ pub struct Cone {
     pub half_angle_radians: f32,
     /// Rays per sample, at least 1; they share the weight.
     pub rays: u32,
+}
+
+impl Cone {
+    /// One ray, exactly along the direction.
+    pub const SHARP: Self = Self { half_angle_radians: 0.0, rays: 1 };
 }
 
 /// The classic model at one point (Phong 1975, Whitted 1980): ambient, diffuse and specular light, a
@@ -57,4 +63,24 @@ pub struct Phong {
     pub ior: f32,
     /// Shares light between mirror and transparency by Fresnel's equations.
     pub fresnel: bool,
+}
+
+impl Phong {
+    /// Takes all light and gives none back.
+    pub const BLACK: Self = Self {
+        emission: Rgb::BLACK,
+        ambient: Rgb::BLACK,
+        occlusion: 0.0,
+        diffuse: Rgb::BLACK,
+        specular: Rgb::BLACK,
+        shininess: 1.0,
+        highlight: Highlight::Phong,
+        both_sides: false,
+        mirror: Rgb::BLACK,
+        glossy: Cone::SHARP,
+        transparency: Rgb::BLACK,
+        blurry: Cone::SHARP,
+        ior: 1.0,
+        fresnel: false,
+    };
 }

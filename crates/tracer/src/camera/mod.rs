@@ -2,10 +2,29 @@
 //!
 //! Film coordinates are pixels from the picture's top left corner, y down: pixel (i, j) covers
 //! [i, i+1) × [j, j+1) and its centre is (i + 0.5, j + 0.5).
+//!
+//! Every camera shares the fields of its pose (see the page `pose.rs` for their exact meaning):
+//!
+//! ```json
+//! {"eye": [0, 2, 6], "look_at": [0, 1, 0], "up": [0, 1, 0],
+//!  "yaw_degrees": 0, "pitch_degrees": 0, "roll_degrees": 0, "move": {"right": 0, "up": 0, "forward": 0}}
+//! ```
 
-use juggler_math::{Ray, UVec2, Vec2, Vec3};
+use juggler_math::UVec2;
 
+mod field_of_view;
+mod orthographic;
 mod perspective;
+mod pose;
+mod projection;
+mod thin_lens;
+
+#[cfg(test)]
+mod contract;
+
+pub use field_of_view::{Screen, ViewPlane};
+pub use pose::Move;
+pub use projection::Projection;
 
 /// Why a camera cannot be: the field at fault and what it should be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -17,24 +36,9 @@ pub struct InvalidCamera {
     pub message: String,
 }
 
-/// A camera for one size of picture: all that a ray needs, nothing to look up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Projection {
-    /// The eye.
-    pub origin: Vec3,
-    /// From the eye to the film's top left corner.
-    pub corner: Vec3,
-    /// One pixel to the right.
-    pub right: Vec3,
-    /// One pixel down.
-    pub down: Vec3,
-}
-
-impl Projection {
-    /// The ray through a point of the film, for `lens` in the unit square; `None` where the film sees nothing.
-    pub fn ray(&self, film: Vec2, _lens: Vec2, time: f32) -> Option<Ray> {
-        let direction = self.corner + self.right * film.x + self.down * film.y;
-        Some(Ray { time, ..Ray::new(self.origin, direction.normalize()) })
+impl InvalidCamera {
+    fn new(field: &'static str, message: impl Into<String>) -> Self {
+        Self { field, message: message.into() }
     }
 }
 
@@ -46,5 +50,9 @@ pub trait Camera: Send + Sync {
 
 closed_set! {
     /// Every camera. In JSON: `{"perspective": {"eye": [0, 2, 6], "look_at": [0, 1, 0]}}`.
-    pub enum AnyCamera: Camera { perspective::Perspective }
+    pub enum AnyCamera: Camera {
+        perspective::Perspective,
+        thin_lens::ThinLens,
+        orthographic::Orthographic,
+    }
 }
