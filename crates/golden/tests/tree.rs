@@ -58,12 +58,39 @@ fn every_dependency_has_a_licence_that_fits() {
 
 /// Whether an SPDX expression can be met: of alternatives one, of requirements all.
 fn fits(expression: &str) -> bool {
-    let expression = expression.replace('/', " OR ").replace(['(', ')'], " ");
-    expression.split(" OR ").any(|all| all.split(" AND ").all(|one| LICENCES.contains(&one.trim())))
+    let expression = expression.replace('/', " OR ");
+    split(&expression, " OR ").iter().any(|all| {
+        split(all, " AND ").iter().all(|one| {
+            let one = one.trim();
+            match one.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')) {
+                Some(inner) => fits(inner),
+                None => LICENCES.contains(&one),
+            }
+        })
+    })
+}
+
+/// Splits at a word that stands outside of parentheses.
+fn split<'a>(text: &'a str, word: &str) -> Vec<&'a str> {
+    let (mut parts, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (at, character) in text.char_indices() {
+        match character {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ if depth == 0 && text[at..].starts_with(word) => {
+                parts.push(&text[start..at]);
+                start = at + word.len();
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[start..]);
+    parts
 }
 
 #[test]
 fn the_licence_check_can_fail() {
     assert!(fits("MIT OR GPL-3.0-only") && fits("MIT/Apache-2.0") && fits("MIT AND ISC"));
+    assert!(fits("(MIT OR Apache-2.0) AND Unicode-3.0") && !fits("(MIT OR Apache-2.0) AND GPL-3.0-only"));
     assert!(!fits("GPL-3.0-only") && !fits("MIT AND AGPL-3.0-only") && !fits(""));
 }

@@ -54,6 +54,12 @@ impl Projection {
         Self { origin: axes.eye, corner, right: axes.right * pixel.x, down: axes.up * -pixel.y, lens }
     }
 
+    /// Whether the place on the lens makes a difference.
+    #[inline]
+    pub fn needs_lens(&self) -> bool {
+        matches!(self.lens, Lens::Disk { .. })
+    }
+
     /// The ray through a point of the film in pixels, for `lens` in the unit square; `None` where the
     /// film sees nothing. Its direction is a unit vector; `time` is handed on.
     #[inline]
