@@ -7,11 +7,12 @@ use juggler_math::{Ray, Transform, Vec2, Vec3, robust};
 pub struct Surface {
     /// The point, pulled back onto the surface after rounding.
     pub point: Vec3,
-    /// Bound on the rounding error of each coordinate of `point`.
+    /// How far a ray that leaves from `point` must start from it, along `normal`, to be off the surface for
+    /// sure: bounds the distance between `point` and the true surface, and what intersecting rounds.
     pub error: f32,
     /// Unit normal of the true surface, outwards (for flat shapes: their stated front).
     pub normal: Vec3,
-    /// Unit normal that shading uses; equals `normal` unless a mesh brings its own.
+    /// Unit normal that shading uses, on the same side; equals `normal` unless a mesh brings its own.
     pub shading_normal: Vec3,
     /// Surface coordinates; the range is each shape's to say.
     pub uv: Vec2,
@@ -20,7 +21,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// An exact point with one normal.
+    /// A point with one normal.
     pub fn new(point: Vec3, error: f32, normal: Vec3, uv: Vec2) -> Self {
         Self { point, error, normal, shading_normal: normal, uv, local: point }
     }
@@ -28,13 +29,14 @@ impl Surface {
     /// The same point in world space.
     pub fn to_world(&self, transform: &Transform) -> Self {
         let point = transform.point(self.point);
-        let rounding = robust::gamma(4) * (point.abs().max_element() + transform.origin().abs().max_element());
         let normal = transform.normal(self.normal);
         let shading_normal =
             if self.shading_normal == self.normal { normal } else { transform.normal(self.shading_normal) };
+        // How far apart two planes along the surface come to lie that were one unit apart.
+        let stretch = transform.vector(self.normal).dot(normal).abs();
         Self {
             point,
-            error: self.error * transform.max_stretch() + rounding,
+            error: self.error * stretch + self.rounding(transform, point, normal, stretch),
             normal,
             shading_normal,
             uv: self.uv,
@@ -42,9 +44,19 @@ impl Surface {
         }
     }
 
+    /// What rounding can move the point along the world `normal` on its way to the world, and a ray's origin
+    /// on its way back to object space (running error analysis: PBR 4th ed., section 6.8.1).
+    fn rounding(&self, transform: &Transform, point: Vec3, normal: Vec3, stretch: f32) -> f32 {
+        let there = transform.matrix().abs() * self.point.abs() + transform.origin().abs();
+        let back = transform.inverse_matrix().abs() * (point - transform.origin()).abs();
+        robust::gamma(5) * (there.dot(normal.abs()) + back.dot(self.normal.abs()) * stretch)
+    }
+
     /// A ray without end from here, free of this surface.
     pub fn spawn(&self, direction: Vec3, time: f32) -> Ray {
-        let origin = robust::offset_origin(self.point, self.error, self.normal, direction);
+        // Even an exact point on an axis plane has to move off it.
+        let error = self.error + f32::MIN_POSITIVE;
+        let origin = robust::offset_origin(self.point, error, self.normal, direction);
         Ray { time, ..Ray::new(origin, direction) }
     }
 }

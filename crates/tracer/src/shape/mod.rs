@@ -3,10 +3,22 @@
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
+mod arithmetic;
+mod check;
 mod mesh_data;
+mod solid_angle;
+
+mod cuboid;
+mod cylinder;
+mod disk;
+mod plane;
+mod polygon;
+mod rectangle;
 mod sphere;
+mod tube;
 
 pub use mesh_data::MeshData;
+pub use sphere::{cross_sphere, intersect_sphere, sphere_surface};
 
 /// What a ray found: 16 bytes, all that traversal carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,9 +69,11 @@ pub trait Shape: Send + Sync {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
     /// Area of the whole surface; infinite for a shape without end, which cannot be a lamp.
     fn area(&self) -> f32;
-    /// A point on the surface that faces `from`, for `u` in the unit square; `None` when there is none.
+    /// A point on the surface for `u` in the unit square; `None` when that one is seen edge-on or the shape has no
+    /// end. A shape that is not convex may hide it behind itself: then it lights nothing.
     fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample>;
-    /// Density per steradian with which [`Shape::sample`] goes in this unit direction.
+    /// Density per steradian with which [`Shape::sample`] picks the first point in this unit direction; 0 for a
+    /// miss. When `from` is on the shape itself, it must have been moved off as [`Surface::spawn`] does.
     fn pdf(&self, from: Vec3, direction: Vec3) -> f32;
     /// How many triangles it is made of; 0 for exact shapes.
     fn triangles(&self) -> usize {
@@ -73,5 +87,14 @@ pub trait Shape: Send + Sync {
 
 closed_set! {
     /// Every shape. In JSON: `{"sphere": {"radius": 1}}`.
-    pub enum AnyShape: Shape { sphere::Sphere }
+    pub enum AnyShape: Shape {
+        sphere::Sphere,
+        plane::Plane,
+        disk::Disk,
+        rectangle::Rectangle,
+        polygon::Polygon,
+        cuboid::Cuboid,
+        cylinder::Cylinder,
+        tube::Tube,
+    }
 }

@@ -1,16 +1,30 @@
 //! A sphere around the local origin.
 //!
-//! ```json
-//! {"sphere": {"radius": 2}}
+//! A ray `o + t d` meets it where `a t² - 2 b t + c = 0` with `a = d·d`, `b = -o·d`, `c = o·o - r²`. The
+//! discriminant is taken as `a r² - |o × d|²` (Lagrange's identity), which like the form of Haines, Günther and
+//! Akenine-Möller (Ray Tracing Gems 2019, chapter 7) does not cancel for small and far spheres, and needs no
+//! division. All of it is in `f64`, so huge spheres seen from close by do not band either.
+//!
+//! ```
+//! use juggler_tracer::shape::{AnyShape, Sphere};
+//! let shape: AnyShape = serde_json::from_str(r#"{"sphere": {"radius": 2}}"#)?;
+//! assert_eq!(shape, Sphere { radius: 2.0 }.into());
+//! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::{Hit, InvalidShape, Shape, SurfaceSample};
+use super::arithmetic::{double, first_in_range, roots, turn};
+use super::solid_angle::{area_pdf, area_sample};
+use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
-use juggler_math::{Aabb, Ray, Vec2, Vec3, robust};
+use juggler_math::{Aabb, DVec3, Frame, Ray, Vec2, Vec3, fun, robust, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f32::consts::PI;
 
 /// A sphere around the local origin.
+///
+/// Surface coordinates: u is the longitude as a fraction of a turn (0 at +x, a quarter at -z), v the latitude
+/// from 0 at the south pole (-y) to 1 at the north pole (+y).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Sphere {
@@ -25,45 +39,122 @@ impl Default for Sphere {
     }
 }
 
+/// Where a line enters and leaves a sphere. `origin` is relative to the centre; the direction has any length.
+#[inline]
+pub fn cross_sphere(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
+    let a = direction.length_squared();
+    let discriminant = a * (radius * radius) - origin.cross(direction).length_squared();
+    if discriminant < 0.0 {
+        return None;
+    }
+    let c = origin.length_squared() - radius * radius;
+    Some(roots(a, -origin.dot(direction), c, discriminant))
+}
+
+/// The nearest hit in the ray's range with the sphere around `center`. The same arithmetic as [`Sphere`] has in
+/// object space, and more precise: only here is the way from centre to ray not rounded.
+#[inline]
+pub fn intersect_sphere(center: Vec3, radius: f32, ray: &Ray) -> Option<Hit> {
+    let (origin, direction) = double(ray);
+    let (near, far) = cross_sphere(origin - center.as_dvec3(), direction, f64::from(radius))?;
+    first_in_range(ray, [(near, 0), (far, 1)])
+}
+
+/// The surface at a hit that [`intersect_sphere`] gave for this ray; `local` is relative to the centre.
+pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surface {
+    let (origin, direction) = double(ray);
+    let (center, wide) = (center.as_dvec3(), f64::from(radius));
+    let origin = origin - center;
+    // Not from `hit.t`: far away, its rounding is not small against the sphere.
+    let t = cross_sphere(origin, direction, wide)
+        .map_or(f64::from(hit.t), |(near, far)| if hit.part == 0 { near } else { far });
+    let unit = (origin + direction * t).normalize_or(DVec3::Y);
+    let (point, normal) = ((center + unit * wide).as_vec3(), unit.as_vec3());
+    let local = (unit * wide).as_vec3();
+    let error = robust::gamma(2) * point.abs().dot(normal.abs());
+    Surface { local, ..Surface::new(point, error, normal, longitude_latitude(normal)) }
+}
+
+fn longitude_latitude(n: Vec3) -> Vec2 {
+    let across = (n.x * n.x + n.z * n.z).sqrt();
+    Vec2::new(turn(n.x, n.z), 0.5 + fun::atan2(n.y, across) / PI)
+}
+
 impl Shape for Sphere {
     fn prepare(&mut self) -> Result<(), InvalidShape> {
-        Ok(())
+        check::positive("radius", self.radius)
     }
 
     fn bounds(&self) -> Aabb {
         Aabb { min: Vec3::splat(-self.radius), max: Vec3::splat(self.radius) }
     }
 
+    #[inline]
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let a = ray.direction.length_squared();
-        let b = -ray.origin.dot(ray.direction);
-        let away = ray.origin + ray.direction * (b / a);
-        let discriminant = self.radius * self.radius - away.length_squared();
-        if discriminant < 0.0 {
-            return None;
-        }
-        let q = b + (a * discriminant).sqrt().copysign(b);
-        let c = ray.origin.length_squared() - self.radius * self.radius;
-        let (near, far) = if q < 0.0 { (q / a, c / q) } else { (c / q, q / a) };
-        let t = if near >= ray.t_min { near } else { far };
-        (t >= ray.t_min && t <= ray.t_max).then_some(Hit { t, uv: Vec2::ZERO, part: 0 })
+        intersect_sphere(Vec3::ZERO, self.radius, ray)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let normal = ray.at(hit.t).normalize_or(Vec3::Y);
-        Surface::new(normal * self.radius, robust::gamma(5) * self.radius, normal, Vec2::ZERO)
+        sphere_surface(Vec3::ZERO, self.radius, ray, hit)
     }
 
     fn area(&self) -> f32 {
-        4.0 * std::f32::consts::PI * self.radius * self.radius
+        4.0 * PI * self.radius * self.radius
     }
 
-    fn sample(&self, _from: Vec3, _u: Vec2) -> Option<SurfaceSample> {
-        None
+    /// From outside evenly within the cone that the sphere fills (Shirley et al., Monte Carlo Techniques for
+    /// Direct Lighting Calculations, 1996), from inside evenly by area.
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
+        let Some(cone) = Cone::seen_from(from, self.radius) else {
+            let normal = warp::uniform_sphere(u);
+            return area_sample(from, normal * self.radius, normal, self.area());
+        };
+        // Angles: θ at `from` off the axis, α at the centre (PBR 4th ed., section 6.2.4).
+        let fall = u.x * cone.fall;
+        let sin_squared = fall * (2.0 - fall);
+        let edge = (1.0 - sin_squared / cone.sin_squared).max(0.0).sqrt();
+        let cos_alpha = (sin_squared / cone.sin + (1.0 - fall) * edge).min(1.0);
+        let sin_alpha = (1.0 - cos_alpha * cos_alpha).sqrt();
+        let (sin, cos) = fun::sin_cos_turns(u.y);
+        let normal = Frame::around(cone.axis).to_world(Vec3::new(sin_alpha * cos, sin_alpha * sin, cos_alpha));
+        Some(SurfaceSample { point: normal * self.radius, normal, pdf: cone.pdf() })
     }
 
-    fn pdf(&self, _from: Vec3, _direction: Vec3) -> f32 {
-        0.0
+    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
+        match Cone::seen_from(from, self.radius) {
+            Some(cone) if self.occludes(&Ray::new(from, direction)) => cone.pdf(),
+            Some(_) => 0.0,
+            None => area_pdf(self, from, direction, self.area()),
+        }
+    }
+}
+
+/// The cone that a sphere fills, seen from outside.
+struct Cone {
+    /// Unit vector from the centre to the place that looks.
+    axis: Vec3,
+    /// Sine of half the opening angle, and its square.
+    sin: f32,
+    sin_squared: f32,
+    /// One minus the cosine of half the opening angle, without cancellation.
+    fall: f32,
+}
+
+impl Cone {
+    fn seen_from(from: Vec3, radius: f32) -> Option<Self> {
+        let (from, radius) = (from.as_dvec3(), f64::from(radius));
+        let distance = from.length();
+        let sin = radius / distance;
+        (sin < 1.0).then(|| Self {
+            axis: (from / distance).as_vec3(),
+            sin: sin as f32,
+            sin_squared: (sin * sin) as f32,
+            fall: (sin * sin / (1.0 + (1.0 - sin * sin).sqrt())) as f32,
+        })
+    }
+
+    fn pdf(&self) -> f32 {
+        warp::uniform_cone_pdf(self.fall)
     }
 }
 
@@ -71,6 +162,6 @@ impl Shape for Sphere {
 impl Sphere {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        vec![Self { radius: 2.0 }]
+        [1.0, 2.5, 1e-4, 1e6].map(|radius| Self { radius }).to_vec()
     }
 }

@@ -1,0 +1,61 @@
+//! Arithmetic that exact shapes share. It runs in `f64`: rays and shapes are given in `f32`, so products are
+//! exact and what is left of a cancellation is still good to more digits than an `f32` holds.
+
+use super::Hit;
+use crate::surface::Surface;
+use juggler_math::{DVec3, Ray, Vec2, fun, robust};
+use std::f32::consts::PI;
+
+/// Origin and direction in double precision.
+#[inline]
+pub fn double(ray: &Ray) -> (DVec3, DVec3) {
+    (ray.origin.as_dvec3(), ray.direction.as_dvec3())
+}
+
+/// Both solutions of `a t² - 2 b t + c = 0`, the smaller first, for `a > 0` and a `discriminant` that stands
+/// for `b² - a c` and is not negative. Nothing cancels (Press et al., Numerical Recipes, section 5.6).
+#[inline]
+pub fn roots(a: f64, b: f64, c: f64, discriminant: f64) -> (f64, f64) {
+    let q = b + discriminant.sqrt().copysign(b);
+    if q < 0.0 { (q / a, c / q) } else { (c / q, q / a) }
+}
+
+/// Where a ray crosses the endless cylinder around the y axis.
+#[inline]
+pub fn cross_tube(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
+    let a = direction.x * direction.x + direction.z * direction.z;
+    let beside = origin.x * direction.z - origin.z * direction.x;
+    let discriminant = a * radius * radius - beside * beside;
+    if discriminant < 0.0 || a == 0.0 {
+        return None;
+    }
+    let b = -(origin.x * direction.x + origin.z * direction.z);
+    let c = origin.x * origin.x + origin.z * origin.z - radius * radius;
+    Some(roots(a, b, c, discriminant))
+}
+
+/// The first of two candidates, nearer one first, that the ray's range holds.
+#[inline]
+pub fn first_in_range(ray: &Ray, candidates: [(f64, u32); 2]) -> Option<Hit> {
+    candidates.into_iter().find_map(|(t, part)| in_range(ray, t, part))
+}
+
+/// A hit at `t` if the ray's range holds it once rounded; never at infinity.
+#[inline]
+pub fn in_range(ray: &Ray, t: f64, part: u32) -> Option<Hit> {
+    let t = t as f32;
+    (t >= ray.t_min && t <= ray.t_max && t < f32::INFINITY).then_some(Hit { t, uv: Vec2::ZERO, part })
+}
+
+/// A surface point that was found in `f64` and is off by its rounding to `f32` alone.
+pub fn rounded_surface(point: DVec3, normal: DVec3, uv: Vec2) -> Surface {
+    let (point, normal) = (point.as_vec3(), normal.as_vec3());
+    Surface::new(point, robust::gamma(2) * point.abs().dot(normal.abs()), normal, uv)
+}
+
+/// The angle about the y axis as a fraction of a turn in [0, 1): 0 towards +x, a quarter towards -z
+/// (counter-clockwise seen from above).
+pub fn turn(x: f32, z: f32) -> f32 {
+    let fraction = fun::atan2(-z, x) / (2.0 * PI);
+    if fraction < 0.0 { (fraction + 1.0).min(1.0 - f32::EPSILON) } else { fraction }
+}
