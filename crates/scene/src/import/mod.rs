@@ -1,0 +1,127 @@
+//! Triangle meshes from files: Wavefront OBJ, Stanford PLY, STL.
+//!
+//! `{"shape": {"mesh": {"file": "models/cow.ply"}}}`
+//!
+//! The readers are our own. The crates that were considered do not say where a file is wrong (tobj 4.0 has
+//! an enum without a place, stl_io 0.11 an `io::Error` without an offset, ply-rs-bw 4.0 no offset in binary
+//! files) and are too slow for big scans (a map lookup and a virtual call for each value of a PLY).
+//! What they share here is small: words and numbers (`text`), polygons (`faces`), welding (`weld`).
+//!
+//! Memory follows the bytes that are really there: counts announced by a header are checked against them
+//! before anything is reserved, and against [`Limits`].
+
+mod assemble;
+mod error;
+mod faces;
+mod obj;
+mod ply;
+mod sniff;
+mod stl;
+mod text;
+mod weld;
+
+pub use error::{Fault, ImportError, Place};
+
+use juggler_tracer::shape::MeshData;
+use sniff::Format;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A mesh, and what of the file is not in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// The mesh: at least one triangle, indices in range, finite positions and surface coordinates,
+    /// normals of any length but zero. Degenerate triangles are as the file has them.
+    pub mesh: MeshData,
+    /// What was left out or repaired, each once with a count.
+    pub warnings: Vec<String>,
+}
+
+/// The most that a file may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Size of the file in bytes.
+    pub file_bytes: u64,
+    /// Vertices in the file or, when that is more, in the mesh.
+    pub vertices: u32,
+    /// Triangles, after polygons are cut.
+    pub triangles: u32,
+}
+
+impl Default for Limits {
+    /// 4 GiB, and 2^28 (268 million) vertices and triangles.
+    fn default() -> Self {
+        Self { file_bytes: 1 << 32, vertices: 1 << 28, triangles: 1 << 28 }
+    }
+}
+
+impl Limits {
+    fn check_bytes(&self, found: u64) -> Result<(), Fault> {
+        check("bytes", found, self.file_bytes)
+    }
+
+    fn check_vertices(&self, found: u64) -> Result<(), Fault> {
+        check("vertices", found, u64::from(self.vertices))
+    }
+
+    fn check_triangles(&self, found: usize) -> Result<(), Fault> {
+        check("triangles", found as u64, u64::from(self.triangles))
+    }
+
+    /// Index of one more vertex after this many.
+    fn next_vertex(&self, count: usize) -> Result<u32, Fault> {
+        match u32::try_from(count) {
+            Ok(index) if index < self.vertices => Ok(index),
+            _ => Err(too_many("vertices", (count as u64).saturating_add(1), u64::from(self.vertices))),
+        }
+    }
+}
+
+fn check(quantity: &'static str, found: u64, limit: u64) -> Result<(), Fault> {
+    if found > limit { Err(too_many(quantity, found, limit)) } else { Ok(()) }
+}
+
+fn too_many(quantity: &'static str, found: u64, limit: u64) -> Fault {
+    Fault::TooMany { quantity, found, limit }
+}
+
+/// Loads a mesh from a file named `.obj`, `.ply` or `.stl` (in any case). Content that is plainly of
+/// another of these formats is read as what it is, with a warning.
+pub fn load(path: &Path, limits: &Limits) -> Result<Imported, ImportError> {
+    let in_file = |fault| ImportError { path: path.to_owned(), fault };
+    let bytes = read_file(path, limits).map_err(in_file)?;
+    parse(path, &bytes, limits)
+}
+
+/// As [`load`], from the bytes of a file; only the ending of `path` is looked at.
+pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, ImportError> {
+    let in_file = |fault| ImportError { path: path.to_owned(), fault };
+    limits.check_bytes(bytes.len() as u64).map_err(in_file)?;
+    // Some editors put the mark of UTF-8 before a text.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let named = Format::of_name(path);
+    let format = Format::of_content(bytes).or(named).ok_or(Fault::UnknownFormat).map_err(in_file)?;
+    let result = match format {
+        Format::Obj => obj::read(bytes, limits),
+        Format::Ply => ply::read(bytes, limits),
+        Format::Stl => stl::read(bytes, limits),
+    };
+    let mut imported = result.map_err(in_file)?;
+    if named != Some(format) {
+        imported.warnings.insert(0, format!("the name does not say so, but the content is {}", format.name()));
+    }
+    Ok(imported)
+}
+
+fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Fault> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    limits.check_bytes(size)?;
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(usize::try_from(size).unwrap_or(usize::MAX)).map_err(std::io::Error::other)?;
+    // A pipe does not know its size, and a file may grow: one byte too many is enough to know.
+    file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    limits.check_bytes(bytes.len() as u64)?;
+    Ok(bytes)
+}

@@ -1,0 +1,78 @@
+//! The numbers of a text PLY: one row a line, empty lines between them passed over.
+
+use super::super::error::{Fault, Place};
+use super::super::text::{self, Scanner};
+use super::body::Values;
+use super::header::Scalar;
+
+/// A text after its header.
+pub(super) struct AsciiValues<'a>(Scanner<'a>);
+
+impl<'a> AsciiValues<'a> {
+    /// From here on.
+    pub fn new(scanner: Scanner<'a>) -> Self {
+        Self(scanner)
+    }
+
+    fn double(&mut self, what: &str) -> Result<f64, Fault> {
+        let word = self.0.word();
+        let value = word.and_then(|word| std::str::from_utf8(word).ok()?.parse().ok());
+        value.ok_or_else(|| self.0.expected(&format!("a number for {what}"), word))
+    }
+}
+
+impl Values for AsciiValues<'_> {
+    fn place(&self) -> Place {
+        self.0.place()
+    }
+
+    fn begin_row(&mut self) -> Result<(), Fault> {
+        if self.0.skip_empty_lines() { Ok(()) } else { Err(self.0.expected("one more row", None)) }
+    }
+
+    fn end_row(&mut self) -> Result<(), Fault> {
+        match self.0.word() {
+            None => {
+                self.0.next_line();
+                Ok(())
+            }
+            word => Err(self.0.expected("the end of the line, as the header says", word)),
+        }
+    }
+
+    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, Fault> {
+        if kind == Scalar::F32 {
+            return self.0.real(what);
+        }
+        // As the binary forms do it: to the type of the property first, to single precision then.
+        self.double(what).map(|value| value as f32)
+    }
+
+    fn integer(&mut self, kind: Scalar, what: &str) -> Result<i64, Fault> {
+        if matches!(kind, Scalar::F32 | Scalar::F64) {
+            let value = self.double(what)?;
+            return text::whole(value, self.place(), what);
+        }
+        let word = self.0.word();
+        word.and_then(text::integer).ok_or_else(|| self.0.expected(what, word))
+    }
+
+    fn skip(&mut self, _kind: Scalar, count: u64) -> Result<(), Fault> {
+        for _ in 0..count {
+            if self.0.word().is_none() {
+                return Err(self.0.expected("one more value, as the header says", None));
+            }
+        }
+        Ok(())
+    }
+
+    fn least_size(&self, _kind: Scalar) -> u64 {
+        // A digit and what separates it from the next one.
+        2
+    }
+
+    fn remaining(&self) -> u64 {
+        // The last value of a file may go without a separator.
+        self.0.rest().len() as u64 + 1
+    }
+}

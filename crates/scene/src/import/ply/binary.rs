@@ -1,0 +1,88 @@
+//! The numbers of a binary PLY, without gaps, in either byte order.
+
+use super::super::error::{Fault, Place};
+use super::super::text::whole;
+use super::body::Values;
+use super::header::{ByteOrder, Scalar};
+
+/// The bytes after a header.
+pub(super) struct BinaryValues<'a> {
+    rest: &'a [u8],
+    size: usize,
+    order: ByteOrder,
+}
+
+impl<'a> BinaryValues<'a> {
+    /// From byte `start` of the file on.
+    pub fn new(file: &'a [u8], start: usize, order: ByteOrder) -> Self {
+        Self { rest: file.get(start..).unwrap_or_default(), size: file.len(), order }
+    }
+
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+        let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else { return Err(self.too_short(N as u64)) };
+        self.rest = rest;
+        let mut bytes = *bytes;
+        if self.order == ByteOrder::Big {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    fn too_short(&self, needed: u64) -> Fault {
+        let found = self.rest.len();
+        self.place().fault(format!("expected {needed} more bytes, found the end of the file after {found}"))
+    }
+}
+
+impl Values for BinaryValues<'_> {
+    fn place(&self) -> Place {
+        Place::Byte((self.size - self.rest.len()) as u64)
+    }
+
+    fn begin_row(&mut self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn end_row(&mut self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    #[inline]
+    fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, Fault> {
+        match kind {
+            Scalar::F32 => self.bytes().map(f32::from_le_bytes),
+            Scalar::F64 => self.bytes().map(|bytes| f64::from_le_bytes(bytes) as f32),
+            _ => self.integer(kind, what).map(|value| value as f32),
+        }
+    }
+
+    #[inline]
+    fn integer(&mut self, kind: Scalar, what: &str) -> Result<i64, Fault> {
+        let place = self.place();
+        Ok(match kind {
+            Scalar::I8 => i8::from_le_bytes(self.bytes()?).into(),
+            Scalar::U8 => u8::from_le_bytes(self.bytes()?).into(),
+            Scalar::I16 => i16::from_le_bytes(self.bytes()?).into(),
+            Scalar::U16 => u16::from_le_bytes(self.bytes()?).into(),
+            Scalar::I32 => i32::from_le_bytes(self.bytes()?).into(),
+            Scalar::U32 => u32::from_le_bytes(self.bytes()?).into(),
+            Scalar::F32 => whole(f32::from_le_bytes(self.bytes()?).into(), place, what)?,
+            Scalar::F64 => whole(f64::from_le_bytes(self.bytes()?), place, what)?,
+        })
+    }
+
+    fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), Fault> {
+        let length = count.saturating_mul(kind.size());
+        let rest = usize::try_from(length).ok().and_then(|length| self.rest.get(length..));
+        self.rest = rest.ok_or_else(|| self.too_short(length))?;
+        Ok(())
+    }
+
+    fn least_size(&self, kind: Scalar) -> u64 {
+        kind.size()
+    }
+
+    fn remaining(&self) -> u64 {
+        self.rest.len() as u64
+    }
+}

@@ -1,0 +1,29 @@
+//! Stanford PLY (Greg Turk, "The PLY Polygon File Format", 1994): text, little-endian or big-endian.
+//!
+//! Read are the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
+//! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or `vertex_index`), in any
+//! order, of any number type. Everything else is passed over, with a warning that names it. In a text, each
+//! line is one row of an element, as the header describes it.
+
+mod ascii;
+mod binary;
+mod body;
+mod header;
+mod vertices;
+
+use super::error::Fault;
+use super::text::Scanner;
+use super::{Imported, Limits};
+use header::{Encoding, Header};
+
+/// Reads a whole file.
+pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
+    let mut scanner = Scanner::new(bytes);
+    let header = Header::read(&mut scanner)?;
+    match header.encoding {
+        Encoding::Ascii => body::read(&header, ascii::AsciiValues::new(scanner), limits),
+        Encoding::Binary(order) => {
+            body::read(&header, binary::BinaryValues::new(bytes, scanner.position(), order), limits)
+        }
+    }
+}

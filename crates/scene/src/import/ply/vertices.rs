@@ -1,0 +1,95 @@
+//! The element `vertex` of a PLY: which columns are what, and reading them.
+
+use super::super::Limits;
+use super::super::assemble::Parts;
+use super::super::error::Fault;
+use super::super::text::finite;
+use super::body::{Values, note_ignored, skip};
+use super::header::Element;
+use juggler_math::{vec2, vec3};
+
+const POSITION: [&str; 3] = ["x", "y", "z"];
+const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
+const SURFACE: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
+/// A row's values: position, normal, surface coordinates.
+const SLOTS: usize = 8;
+
+/// What becomes of each column: the slot of its value, or nothing.
+struct Columns {
+    slots: Vec<Option<usize>>,
+    normals: bool,
+    uvs: bool,
+}
+
+impl Columns {
+    fn of(element: &Element) -> Result<Self, Fault> {
+        let mut slots = vec![None; element.properties.len()];
+        if !assign(&mut slots, element, &POSITION, 0) {
+            return Err(element.place.fault("expected properties x, y and z of the element 'vertex', each one number"));
+        }
+        let normals = assign(&mut slots, element, &NORMAL, 3);
+        let uvs = SURFACE.iter().any(|names| assign(&mut slots, element, names, 6));
+        Ok(Self { slots, normals, uvs })
+    }
+}
+
+/// Gives the columns of these names the slots from `first` on, if all are there.
+fn assign(slots: &mut [Option<usize>], element: &Element, names: &[&str], first: usize) -> bool {
+    let is_number = |column: &usize| element.properties.get(*column).is_some_and(|property| property.length.is_none());
+    let columns: Vec<usize> = names.iter().filter_map(|name| element.column(name).filter(is_number)).collect();
+    if columns.len() < names.len() {
+        return false;
+    }
+    for (slot, column) in (first..).zip(columns) {
+        if let Some(entry) = slots.get_mut(column) {
+            *entry = Some(slot);
+        }
+    }
+    true
+}
+
+/// Reads all rows. The caller has made sure that the file is long enough for them.
+pub(super) fn read_vertices(
+    element: &Element,
+    values: &mut impl Values,
+    limits: &Limits,
+    parts: &mut Parts,
+) -> Result<(), Fault> {
+    let columns = Columns::of(element)?;
+    note_ignored(element, |index| columns.slots.get(index).is_some_and(Option::is_some), &mut parts.warnings);
+    limits.check_vertices(element.count)?;
+    let count = usize::try_from(element.count).unwrap_or(0);
+    parts.positions.reserve_exact(count);
+    parts.normals.reserve_exact(if columns.normals { count } else { 0 });
+    parts.uvs.reserve_exact(if columns.uvs { count } else { 0 });
+    for _ in 0..element.count {
+        let [x, y, z, nx, ny, nz, u, v] = read_row(element, &columns, values)?;
+        parts.positions.push(vec3(x, y, z));
+        if columns.normals {
+            parts.normals.push(vec3(nx, ny, nz));
+        }
+        if columns.uvs {
+            parts.uvs.push(vec2(u, v));
+        }
+    }
+    Ok(())
+}
+
+fn read_row(element: &Element, columns: &Columns, values: &mut impl Values) -> Result<[f32; SLOTS], Fault> {
+    let mut row = [0.0; SLOTS];
+    values.begin_row()?;
+    for (property, slot) in element.properties.iter().zip(&columns.slots) {
+        let Some(entry) = slot.and_then(|slot| row.get_mut(slot)) else {
+            skip(property, values)?;
+            continue;
+        };
+        let place = values.place();
+        *entry = values.real(property.item, &property.name)?;
+        // A normal that is no direction is repaired later.
+        if !matches!(slot, Some(3..6)) {
+            finite(*entry, place, &property.name)?;
+        }
+    }
+    values.end_row()?;
+    Ok(row)
+}
