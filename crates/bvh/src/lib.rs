@@ -1,1 +1,104 @@
-//! bvh
+//! Bounding volume hierarchies over boxes and over triangles. Knows no shading and no shapes: boxes in,
+//! ranges of items out.
+//!
+//! [`Bvh`] is a tree eight wide over anything that has a box; a [`Leaf`] visitor tests the items.
+//! [`TriangleBvh`] holds triangles and tests them itself, watertight. The crate's `README.md` explains the
+//! layout and the three ways to trace: one ray, a batch of unrelated rays, a packet of coherent ones.
+//!
+//! ```
+//! use juggler_bvh::{Bvh, Leaf, Quality};
+//! use juggler_math::{Aabb, Ray, Vec3};
+//! use std::ops::Range;
+//!
+//! /// Boxes that are themselves the shapes.
+//! struct Boxes { shapes: Vec<Aabb>, nearest: Option<u32> }
+//!
+//! impl Leaf for Boxes {
+//!     fn closest(&mut self, _lane: usize, ray: &mut Ray, items: Range<u32>) {
+//!         for item in items {
+//!             if let Some((enter, _)) = self.shapes[item as usize].clip(ray) {
+//!                 ray.t_max = enter;
+//!                 self.nearest = Some(item);
+//!             }
+//!         }
+//!     }
+//!     fn any(&mut self, _lane: usize, ray: &Ray, mut items: Range<u32>) -> bool {
+//!         items.any(|item| self.shapes[item as usize].clip(ray).is_some())
+//!     }
+//! }
+//!
+//! let boxes: Vec<Aabb> = (0..100u8).map(|i| Aabb::from_points([Vec3::X * f32::from(i)]).grown(0.25)).collect();
+//! let bvh = Bvh::build(&boxes, Quality::Balanced);
+//! let shapes = bvh.order().iter().map(|&item| boxes[item as usize]).collect();
+//! let mut leaf = Boxes { shapes, nearest: None };
+//! let mut ray = Ray::new(Vec3::new(40.0, 1.0, 0.0), -Vec3::Y);
+//! bvh.closest(&mut ray, &mut leaf);
+//! assert_eq!(ray.t_max, 0.75);
+//! assert_eq!(leaf.nearest.map(|item| bvh.order()[item as usize]), Some(40));
+//! ```
+
+mod build;
+mod inspect;
+mod node;
+mod packet;
+mod single;
+mod slabs;
+mod stack;
+mod triangle;
+mod triangles;
+
+pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality};
+pub use inspect::Visits;
+pub use packet::PACKET;
+pub use triangle::intersect_triangle;
+pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
+
+use juggler_math::{Aabb, Ray};
+use node::Node;
+use std::ops::Range;
+
+/// A tree of boxes, eight wide.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    /// The root is node 0; there is always one.
+    nodes: Vec<Node>,
+    order: Vec<u32>,
+    bounds: Aabb,
+    stats: BuildStats,
+}
+
+/// What happens at the leaves: the owner of the items tests them.
+pub trait Leaf {
+    /// Tests the items at the positions `items` (of [`Bvh::order`]) with ray number `lane` of the call;
+    /// shortens `ray.t_max` on a hit.
+    ///
+    /// A leaf is shown whenever its box is entered at or before `t_max`, so that of hits at equal distance
+    /// the implementor can keep the one with the smallest item number, whatever the order of the visits.
+    fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>);
+
+    /// Whether one of the items is hit between `ray.t_min` and `ray.t_max`.
+    fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool;
+}
+
+impl Bvh {
+    /// The items in the order of the leaves: position `p` of a leaf's range is item `order()[p]`. Store what
+    /// the leaves need in this order.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The box of everything in the tree; empty when nothing is.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// What the build made.
+    pub fn stats(&self) -> &BuildStats {
+        &self.stats
+    }
+
+    /// Bytes of memory that the tree holds, without the items.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<u32>()
+    }
+}

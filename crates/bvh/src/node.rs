@@ -1,0 +1,139 @@
+//! The node: eight child boxes side by side, and what each child is.
+//!
+//! 256 bytes in four cache lines: three axes of (eight minima, eight maxima), then eight child words. All
+//! eight boxes are tested together; the loops over `[f32; 8]` are written so that they become vector code.
+
+use crate::slabs::Slabs;
+use juggler_math::Aabb;
+use std::ops::Range;
+
+/// Children of a node.
+pub(crate) const WIDTH: usize = 8;
+/// Most items in a leaf.
+pub(crate) const LEAF_MAX: usize = 8;
+
+const LEAF_BIT: u32 = 1 << 31;
+const COUNT_SHIFT: u32 = 28;
+const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
+
+/// What hangs below: the number of a node, or a leaf bit, the count less one (3 bits) and the first position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Child(pub u32);
+
+impl Child {
+    /// The root node.
+    pub const ROOT: Self = Self(0);
+
+    pub fn node(index: usize) -> Self {
+        Self(index as u32 & !LEAF_BIT)
+    }
+
+    /// A leaf of 1 to [`LEAF_MAX`] items.
+    pub fn leaf(first: usize, count: usize) -> Self {
+        debug_assert!((1..=LEAF_MAX).contains(&count) && first <= FIRST_MASK as usize);
+        Self(LEAF_BIT | (count as u32 - 1) << COUNT_SHIFT | first as u32 & FIRST_MASK)
+    }
+
+    #[inline(always)]
+    pub fn is_leaf(self) -> bool {
+        self.0 & LEAF_BIT != 0
+    }
+
+    /// Positions of a leaf's items.
+    #[inline(always)]
+    pub fn items(self) -> Range<u32> {
+        let first = self.0 & FIRST_MASK;
+        first..first + (self.0 >> COUNT_SHIFT & 7) + 1
+    }
+}
+
+/// Boxes of up to eight children and the children.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Node {
+    /// `bounds[axis][0]` are the minima of the boxes, `bounds[axis][1]` the maxima. A slot without a child
+    /// holds the empty box, which no ray meets.
+    pub bounds: [[[f32; WIDTH]; 2]; 3],
+    pub children: [Child; WIDTH],
+    /// How many of the slots are in use.
+    pub count: u32,
+}
+
+impl Node {
+    pub const EMPTY: Self = Self {
+        bounds: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
+        children: [Child::ROOT; WIDTH],
+        count: 0,
+    };
+
+    /// Puts a child into the next free slot.
+    pub fn add(&mut self, bounds: &Aabb, child: Child) {
+        let slot = self.count as usize;
+        for axis in 0..3 {
+            self.bounds[axis][0][slot] = bounds.min[axis];
+            self.bounds[axis][1][slot] = bounds.max[axis];
+        }
+        self.children[slot] = child;
+        self.count += 1;
+    }
+
+    /// Which boxes are met (bit per slot), and where each is entered.
+    #[inline(always)]
+    pub fn test(&self, slabs: &Slabs) -> (u32, [f32; WIDTH]) {
+        let mut enter = [slabs.t_min; WIDTH];
+        let mut leave = [slabs.t_max; WIDTH];
+        for axis in 0..3 {
+            let side = slabs.side[axis];
+            let near = &self.bounds[axis][side & 1];
+            let far = &self.bounds[axis][(side & 1) ^ 1];
+            for i in 0..WIDTH {
+                let n = (near[i] - slabs.near_origin[axis]) * slabs.near_inverse[axis];
+                let f = (far[i] - slabs.far_origin[axis]) * slabs.far_inverse[axis];
+                // Written so that a NaN leaves the range as it is.
+                enter[i] = if n > enter[i] { n } else { enter[i] };
+                leave[i] = if f < leave[i] { f } else { leave[i] };
+            }
+        }
+        (mask_of(&enter, &leave), enter)
+    }
+}
+
+/// Bit `i` is set where `enter[i] <= leave[i]`.
+#[inline(always)]
+pub(crate) fn mask_of(enter: &[f32; WIDTH], leave: &[f32; WIDTH]) -> u32 {
+    let mut mask = 0;
+    for i in 0..WIDTH {
+        mask |= u32::from(enter[i] <= leave[i]) << i;
+    }
+    mask
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::{Ray, Vec3};
+
+    #[test]
+    fn a_node_takes_four_cache_lines() {
+        assert_eq!((size_of::<Node>(), align_of::<Node>()), (256, 64));
+    }
+
+    #[test]
+    fn a_child_word_gives_back_what_it_holds() {
+        for (first, count) in [(0, 1), (5, 8), (FIRST_MASK as usize, 3)] {
+            let child = Child::leaf(first, count);
+            assert!(child.is_leaf());
+            assert_eq!(child.items(), first as u32..(first + count) as u32);
+        }
+        assert!(!Child::node(77).is_leaf());
+    }
+
+    #[test]
+    fn free_slots_are_never_met() {
+        let mut node = Node::EMPTY;
+        node.add(&Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE }, Child::leaf(0, 1));
+        for direction in [Vec3::X, -Vec3::X, Vec3::new(-0.0, 1.0, 0.0), Vec3::ONE, Vec3::new(1e-40, 1.0, 0.0)] {
+            assert_eq!(node.test(&Slabs::of_ray(&Ray::new(Vec3::ZERO, direction))).0, 1, "{direction}");
+        }
+    }
+}

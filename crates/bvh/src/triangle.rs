@@ -1,0 +1,179 @@
+//! The watertight ray-triangle test (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection",
+//! JCGT 2(1)).
+//!
+//! The triangle is sheared so that the ray becomes the z axis; what is left is on which side of three edges
+//! the origin of the plane lies. Two triangles that share an edge compute the same number for it with
+//! opposite sign, so no ray can pass between them. Both faces are hit.
+//!
+//! Deviations from the paper: the winding is not kept, for nothing is culled by it; a sign is taken from
+//! double precision only where the single one is zero (a product difference rounds to zero or keeps its
+//! sign); the weights are normalised before the distance is summed, which avoids overflow; and the distance
+//! is never before the entry of the triangle's own box, so that which hit is closest cannot depend on the
+//! order in which boxes are visited.
+
+use crate::slabs::entry;
+use juggler_math::{Aabb, Ray, Vec3};
+
+/// Determinants outside this range have lost too much to underflow or overflow in single precision.
+const SAFE: std::ops::Range<f32> = 1e-24..1e30;
+
+/// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
+/// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
+/// that meets an edge or a corner hits at least one of the triangles there. Triangles without area are
+/// never hit.
+pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, f32, f32)> {
+    Shear::of(ray).intersect(ray, [a, b, c])
+}
+
+/// Whether the triangle is one: finite, and with an area that is not zero in double precision.
+pub(crate) fn has_area([a, b, c]: [Vec3; 3]) -> bool {
+    let normal = (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
+    a.is_finite() && b.is_finite() && c.is_finite() && normal != juggler_math::DVec3::ZERO
+}
+
+/// The shear that makes the ray the z axis, and the ray's origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shear {
+    pub origin: [f32; 3],
+    /// The axes that become x, y and z; z is where the direction is largest.
+    pub axes: [usize; 3],
+    /// What to multiply z by and subtract from x and y, and what to multiply z by.
+    pub factors: [f32; 3],
+}
+
+/// A vertex in the ray's frame.
+type Point = [f32; 3];
+
+impl Shear {
+    #[inline(always)]
+    pub fn of(ray: &Ray) -> Self {
+        let d = ray.direction.to_array();
+        let size = ray.direction.abs();
+        let z = if size.x >= size.y && size.x >= size.z { 0 } else { 2 - usize::from(size.y >= size.z) };
+        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let factors = [d[axes[0]] / d[z], d[axes[1]] / d[z], 1.0 / d[z]];
+        Self { origin: ray.origin.to_array(), axes, factors }
+    }
+
+    #[inline(always)]
+    fn project(&self, vertex: Vec3) -> Point {
+        let vertex = vertex.to_array();
+        let [x, y, z] = self.axes.map(|axis| vertex[axis] - self.origin[axis]);
+        [x - self.factors[0] * z, y - self.factors[1] * z, self.factors[2] * z]
+    }
+
+    /// [`intersect_triangle`] for the ray that the shear was made of.
+    pub fn intersect(&self, ray: &Ray, vertices: [Vec3; 3]) -> Option<(f32, f32, f32)> {
+        let points = vertices.map(|vertex| self.project(vertex));
+        let (t, u, v) = weigh(points)?;
+        if !has_area(vertices) {
+            return None;
+        }
+        let start = entry(ray, &Aabb::from_points(vertices));
+        let t = if start > t { start } else { t };
+        (ray.t_min <= t && t <= ray.t_max).then_some((t, u, v))
+    }
+}
+
+/// Distance and weights of the second and third corner; `None` where the axis passes outside.
+#[inline(always)]
+fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+    let edges = edges(points.map(|[x, y, _]| [x, y]));
+    if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
+        return None;
+    }
+    let determinant = edges[0] + edges[1] + edges[2];
+    if edges.contains(&0.0) || !SAFE.contains(&determinant.abs()) {
+        return weigh_exactly(points);
+    }
+    let inverse = 1.0 / determinant;
+    let [u, v, w] = edges.map(|e| e * inverse);
+    Some((u * points[0][2] + v * points[1][2] + w * points[2][2], v, w))
+}
+
+/// Twice the signed areas between the axis and each edge, in the order of the opposite corners.
+#[inline(always)]
+fn edges<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>([a, b, c]: [[T; 2]; 3]) -> [T; 3] {
+    [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
+}
+
+/// [`weigh`] in double precision, where the signs are exact: for axes through an edge or a corner, and
+/// for very large or small triangles.
+#[cold]
+fn weigh_exactly(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+    let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
+    if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
+        return None;
+    }
+    let determinant = edges[0] + edges[1] + edges[2];
+    if determinant == 0.0 || !determinant.is_finite() {
+        return None;
+    }
+    let [u, v, w] = edges.map(|e| e / determinant);
+    let [a, b, c] = points.map(|p| f64::from(p[2]));
+    Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: Vec3 = Vec3::ZERO;
+    const B: Vec3 = Vec3::X;
+    const C: Vec3 = Vec3::Y;
+
+    #[test]
+    fn known_hit_from_both_sides_and_with_any_length_of_direction() {
+        for length in [1.0, 0.125, 1000.0] {
+            let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0), -Vec3::Z * length);
+            assert_eq!(intersect_triangle(&ray, A, B, C), Some((2.0 / length, 0.25, 0.5)));
+            assert_eq!(intersect_triangle(&ray, A, C, B), Some((2.0 / length, 0.5, 0.25)));
+        }
+        let below = Ray::new(Vec3::new(0.25, 0.5, -2.0), Vec3::Z);
+        assert_eq!(intersect_triangle(&below, A, B, C), Some((2.0, 0.25, 0.5)));
+    }
+
+    #[test]
+    fn only_the_stretch_of_the_ray_counts() {
+        let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), -Vec3::Z);
+        assert!(intersect_triangle(&ray.up_to(1.0), A, B, C).is_some());
+        assert!(intersect_triangle(&ray.up_to(0.99), A, B, C).is_none());
+        assert!(intersect_triangle(&Ray { t_min: 1.01, ..ray }, A, B, C).is_none());
+        assert!(intersect_triangle(&Ray { direction: Vec3::Z, ..ray }, A, B, C).is_none());
+    }
+
+    #[test]
+    fn edges_and_corners_are_hit() {
+        let points = [A, B, C, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.5, 0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
+        for point in points {
+            let ray = Ray::new(point + Vec3::Z, -Vec3::Z);
+            let (t, u, v) = intersect_triangle(&ray, A, B, C).unwrap();
+            assert_eq!((t, Vec3::new(u, v, 0.0)), (1.0, point));
+        }
+    }
+
+    #[test]
+    fn triangles_without_area_are_never_hit() {
+        let ray = Ray::new(Vec3::Z, -Vec3::Z);
+        let through = |a, b, c| intersect_triangle(&ray, a, b, c);
+        assert_eq!(through(-Vec3::X, Vec3::ZERO, Vec3::X), None);
+        assert_eq!(through(Vec3::ZERO, Vec3::ZERO, Vec3::X), None);
+        assert_eq!(through(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO), None);
+        assert_eq!(through(Vec3::NAN, Vec3::X, Vec3::Y), None);
+        assert_eq!(through(Vec3::INFINITY, Vec3::X, Vec3::Y), None);
+        // Edge-on: the plane holds the ray.
+        assert_eq!(through(-Vec3::X, Vec3::X, -Vec3::Z), None);
+        assert_eq!(intersect_triangle(&Ray::new(Vec3::Z, Vec3::ZERO), A, B, C), None);
+    }
+
+    #[test]
+    fn size_does_not_matter() {
+        for exponent in [-36, -30, -10, 10, 25, 30, 36] {
+            let scale = 10f32.powi(exponent);
+            let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0) * scale, -Vec3::Z);
+            let (t, u, v) = intersect_triangle(&ray, A * scale, B * scale, C * scale).unwrap();
+            assert!((t / scale - 2.0).abs() < 1e-5, "{exponent}: {t}");
+            assert!((u - 0.25).abs() < 1e-5 && (v - 0.5).abs() < 1e-5, "{exponent}: {u} {v}");
+        }
+    }
+}
