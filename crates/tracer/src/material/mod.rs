@@ -1,20 +1,31 @@
 //! Materials: recipes that textures fill in, compiled once into tables without names.
 
-use crate::bsdf::Phong as PhongLobe;
 use crate::surface::Surface;
-use crate::texture::TextureTable;
+use crate::texture::{Lookup, TextureTable};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::{Deserialize, Deserializer, Serialize};
 
 mod checkerboard;
+mod compiler;
+mod error;
 mod phong;
+mod table;
+
+#[cfg(test)]
+mod contract;
+
+pub use compiler::{MAX_NESTING, MaterialCompiler};
+pub use error::MaterialError;
+pub use phong::{DiffuseNormalization, Spread};
+pub use table::MaterialTable;
 
 /// A material's place in the [`MaterialTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
 /// A material written in place, or the name of one of the scene's.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum MaterialRef {
     /// Name of a material of the scene.
@@ -25,7 +36,33 @@ pub enum MaterialRef {
 
 impl Default for MaterialRef {
     fn default() -> Self {
-        Self::Inline(Box::new(Phong::default().into()))
+        Phong::default().into()
+    }
+}
+
+impl<M: Into<AnyMaterial>> From<M> for MaterialRef {
+    fn from(material: M) -> Self {
+        Self::Inline(Box::new(material.into()))
+    }
+}
+
+/// By hand, so that an error inside a material names its field (an untagged enum would not).
+impl<'de> Deserialize<'de> for MaterialRef {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl<'de> serde::de::Visitor<'de> for Visitor {
+            type Value = MaterialRef;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("the name of a material, or a material")
+            }
+            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<MaterialRef, E> {
+                Ok(MaterialRef::Name(name.to_owned()))
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<MaterialRef, A::Error> {
+                AnyMaterial::deserialize(MapAccessDeserializer::new(map)).map(MaterialRef::from)
+            }
+        }
+        deserializer.deserialize_any(Visitor)
     }
 }
 
@@ -38,30 +75,6 @@ pub enum Compiled {
     Checkerboard(checkerboard::CompiledCheckerboard),
 }
 
-/// Why a material cannot be compiled.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MaterialError {
-    /// A texture that the scene has not.
-    #[error(transparent)]
-    UnknownTexture(#[from] crate::texture::UnknownTexture),
-    /// A material that the scene has not.
-    #[error("no material is called `{name}`")]
-    UnknownMaterial {
-        /// The field that names it.
-        field: &'static str,
-        /// The name.
-        name: String,
-    },
-    /// Checkerboards within checkerboards without end.
-    #[error("the material `{name}` contains itself")]
-    Cycle {
-        /// The field that closes the circle.
-        field: &'static str,
-        /// The name.
-        name: String,
-    },
-}
-
 /// Looks up what a material names while it is compiled.
 pub trait Resolver {
     /// The scene's textures.
@@ -72,34 +85,21 @@ pub trait Resolver {
 
 /// A recipe.
 pub trait Material: Send + Sync {
+    /// Its name in JSON.
+    fn kind(&self) -> &'static str;
     /// Looks up every name, once.
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError>;
 }
 
 closed_set! {
     /// Every material. In JSON: `{"phong": {"diffuse": [0.8, 0.1, 0.1]}}`.
-    pub enum AnyMaterial: Material { phong::Phong, checkerboard::Checkerboard }
-}
-
-/// All materials of a world by number, with the textures they use.
-#[derive(Debug, Default)]
-pub struct MaterialTable {
-    /// The compiled materials.
-    pub materials: Vec<Compiled>,
-    /// Their textures.
-    pub textures: TextureTable,
-}
-
-impl MaterialTable {
-    /// The numbers of material `id` at a point of a surface (world space, normals as the shape gives them).
-    pub fn phong(&self, id: MaterialId, surface: &Surface) -> PhongLobe {
-        let mut id = id;
-        // A checkerboard may hold checkerboards; compiling refused circles, so this ends.
-        loop {
-            match &self.materials[id.0 as usize] {
-                Compiled::Phong(phong) => return phong.eval(surface, &self.textures),
-                Compiled::Checkerboard(board) => id = board.pick(surface),
-            }
-        }
+    pub enum AnyMaterial: Material {
+        phong::Phong,
+        checkerboard::Checkerboard,
     }
+}
+
+/// Where textures are asked at a point of a surface.
+fn lookup(surface: &Surface) -> Lookup {
+    Lookup { uv: surface.uv, local: surface.local, world: surface.point }
 }

@@ -1,0 +1,82 @@
+//! What can be wrong with a material, and where.
+
+use crate::texture::UnknownTexture;
+
+/// Why a material cannot be compiled.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MaterialError {
+    /// A texture that the scene has not.
+    #[error(transparent)]
+    UnknownTexture(#[from] UnknownTexture),
+    /// A material that the scene has not.
+    #[error("no material is called `{name}`")]
+    UnknownMaterial {
+        /// The field that names it.
+        field: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Checkerboards within checkerboards without end.
+    #[error("the material `{name}` contains itself")]
+    Cycle {
+        /// The field that closes the circle.
+        field: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Checkerboards within checkerboards, too many.
+    #[error("materials lie more than {} deep in each other here", super::MAX_NESTING)]
+    TooDeep,
+    /// A number that cannot be.
+    #[error("{message}")]
+    Invalid {
+        /// The field.
+        field: &'static str,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// An error inside a field.
+    #[error("{error}")]
+    Within {
+        /// The field.
+        field: &'static str,
+        /// What is wrong there.
+        error: Box<MaterialError>,
+    },
+}
+
+impl MaterialError {
+    /// Path of the field at fault, as in the scene file, from what was compiled: `even.phong.ior`.
+    pub fn path(&self) -> String {
+        match self {
+            Self::UnknownTexture(UnknownTexture { field, .. })
+            | Self::UnknownMaterial { field, .. }
+            | Self::Cycle { field, .. }
+            | Self::Invalid { field, .. } => (*field).to_owned(),
+            Self::TooDeep => String::new(),
+            Self::Within { field, error } => {
+                let inner = error.path();
+                if inner.is_empty() { (*field).to_owned() } else { format!("{field}.{inner}") }
+            }
+        }
+    }
+
+    pub(super) fn within(self, field: &'static str) -> Self {
+        Self::Within { field, error: Box::new(self) }
+    }
+}
+
+/// Refuses a number outside `low..=high`, and what is no number.
+pub(super) fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), MaterialError> {
+    if value >= low && value <= high {
+        return Ok(());
+    }
+    let range = if low == f32::MIN_POSITIVE {
+        "above 0".to_owned()
+    } else if high == f32::MAX {
+        format!("{low} or more")
+    } else {
+        format!("between {low} and {high}")
+    };
+    Err(MaterialError::Invalid { field, message: format!("`{field}` must be {range}, it is {value}") })
+}

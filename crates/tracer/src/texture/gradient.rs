@@ -1,0 +1,181 @@
+//! Colours that run into each other along a line or around a point.
+//!
+//! ```json
+//! {"gradient": {"space": "local", "start": [0, -1, 0], "end": [0, 1, 0], "stops": [
+//!     {"position": 0, "color": "#202060"}, {"position": 0.5, "color": [1, 1, 1]}, {"position": 1, "color": "#802020"}]}}
+//! ```
+//!
+//! The position of a point p is (p − start) · (end − start) / |end − start|², or |p − start| / |end − start|
+//! for the radial shape. Colours are mixed in linear light; before the first and behind the last stop the
+//! colour stays.
+
+use super::{InvalidTexture, Lookup, Space, Texture};
+use juggler_math::{Rgb, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Colours that run into each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Gradient {
+    /// The colours with their positions, in rising order; two at one position make a sharp edge.
+    #[schemars(length(min = 1))]
+    pub stops: Vec<Stop>,
+    /// The coordinates of `start` and `end`.
+    pub space: Space,
+    /// Where position 0 is.
+    #[schemars(with = "[f32; 3]")]
+    pub start: Vec3,
+    /// Where position 1 is.
+    #[schemars(with = "[f32; 3]")]
+    pub end: Vec3,
+    /// How positions grow.
+    pub shape: GradientShape,
+}
+
+/// A colour at a position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Stop {
+    /// 0 at the gradient's start, 1 at its end.
+    pub position: f32,
+    /// The colour there.
+    pub color: Rgb,
+}
+
+/// How positions grow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GradientShape {
+    /// Along the direction from start to end.
+    #[default]
+    Linear,
+    /// With the distance from the start.
+    Radial,
+}
+
+impl Default for Gradient {
+    fn default() -> Self {
+        let stop = |position, color| Stop { position, color };
+        Self {
+            stops: vec![stop(0.0, Rgb::BLACK), stop(1.0, Rgb::WHITE)],
+            space: Space::Uv,
+            start: Vec3::ZERO,
+            end: Vec3::Y,
+            shape: GradientShape::Linear,
+        }
+    }
+}
+
+impl Gradient {
+    fn position(&self, p: Vec3) -> f32 {
+        let (along, from_start) = (self.end - self.start, p - self.start);
+        match self.shape {
+            GradientShape::Linear => from_start.dot(along) / along.length_squared(),
+            GradientShape::Radial => from_start.length() / along.length(),
+        }
+    }
+
+    fn color(&self, position: f32) -> Rgb {
+        // The first stop beyond; `position` lies between it and the one before.
+        let next = self.stops.iter().position(|stop| position < stop.position);
+        let before = next.unwrap_or(self.stops.len()).checked_sub(1).and_then(|i| self.stops.get(i));
+        match (before, next.and_then(|i| self.stops.get(i))) {
+            (Some(a), Some(b)) => a.color.lerp(b.color, (position - a.position) / (b.position - a.position)),
+            (Some(stop), None) | (None, Some(stop)) => stop.color,
+            (None, None) => Rgb::BLACK,
+        }
+    }
+}
+
+impl Texture for Gradient {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        if self.stops.is_empty() {
+            return Err(InvalidTexture::new("stops", "a gradient needs at least one stop"));
+        }
+        for (i, stop) in self.stops.iter().enumerate() {
+            if !(stop.position.is_finite() && stop.color.is_finite()) {
+                return Err(InvalidTexture::new(format!("stops[{i}]"), "positions and colours must be finite"));
+            }
+        }
+        if let Some(i) = self.stops.windows(2).position(|pair| matches!(pair, [a, b] if a.position > b.position)) {
+            let field = format!("stops[{}].position", i + 1);
+            return Err(InvalidTexture::new(field, "positions must rise from stop to stop"));
+        }
+        let length = (self.end - self.start).length_squared();
+        if !(length >= f32::MIN_POSITIVE && length.is_finite()) {
+            return Err(InvalidTexture::new(
+                "end",
+                "`start` and `end` must be two different points, neither too far nor too near",
+            ));
+        }
+        Ok(())
+    }
+
+    fn eval(&self, at: &Lookup) -> Rgb {
+        self.color(self.position(at.point(self.space)))
+    }
+}
+
+#[cfg(test)]
+impl Gradient {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let radial = Self { shape: GradientShape::Radial, space: Space::World, ..Self::default() };
+        vec![Self::default(), radial]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::Vec2;
+
+    fn at(json: &str, p: Vec3) -> Rgb {
+        let gradient: Gradient = serde_json::from_str(json).unwrap();
+        gradient.check().unwrap();
+        gradient.eval(&Lookup { uv: Vec2::new(p.x, p.y), local: p, world: p * 2.0 })
+    }
+
+    fn near(a: Rgb, b: [f32; 3]) -> bool {
+        (Vec3::from(a.to_array()) - Vec3::from(b)).abs().max_element() < 1e-6
+    }
+
+    #[test]
+    fn colours_between_stops_are_mixed() {
+        let json = r#"{"space": "local", "start": [0, -1, 0], "end": [0, 3, 0], "stops": [{"position": 0, "color": [1, 0, 0]},
+            {"position": 0.5, "color": [0, 1, 0]}, {"position": 0.5, "color": [0, 0, 1]}, {"position": 1, "color": [1, 1, 1]}]}"#;
+        for (y, color) in [
+            (-9.0, [1.0, 0.0, 0.0]),
+            (-1.0, [1.0, 0.0, 0.0]),
+            (0.0, [0.5, 0.5, 0.0]),
+            (0.5, [0.25, 0.75, 0.0]),
+            (1.0, [0.0, 0.0, 1.0]),
+            (2.0, [0.5, 0.5, 1.0]),
+            (3.0, [1.0, 1.0, 1.0]),
+            (1e30, [1.0, 1.0, 1.0]),
+        ] {
+            assert!(near(at(json, Vec3::new(5.0, y, -7.0)), color), "{y}: {:?}", at(json, Vec3::Y * y));
+        }
+    }
+
+    #[test]
+    fn radial_positions_are_distances() {
+        let json = r#"{"space": "world", "start": [1, 0, 0], "end": [1, 0, 4], "shape": "radial"}"#;
+        // World space is twice the local point in this test.
+        assert!(near(at(json, Vec3::new(0.5, 0.6, 0.8)), [0.5; 3]));
+        assert!(near(at(json, Vec3::new(0.5, 0.0, 0.0)), [0.0; 3]) && near(at(json, Vec3::ONE * 9.0), [1.0; 3]));
+        assert!(near(at(r#"{"stops": [{"position": 0.3, "color": 0.7}]}"#, Vec3::ONE), [0.7; 3]));
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        for (json, field) in [
+            (r#"{"stops": []}"#, "stops"),
+            (r#"{"stops": [{"position": 1, "color": 0}, {"position": 0, "color": 1}]}"#, "stops[1].position"),
+            (r#"{"stops": [{"position": 1e39, "color": 0}]}"#, "stops[0]"),
+            (r#"{"start": [0, 1, 0]}"#, "end"),
+        ] {
+            assert_eq!(serde_json::from_str::<Gradient>(json).unwrap().check().unwrap_err().field, field);
+        }
+    }
+}
