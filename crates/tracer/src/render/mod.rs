@@ -15,6 +15,9 @@ mod control;
 mod schedule;
 mod wavefront;
 
+#[cfg(test)]
+mod tests;
+
 pub use control::{Control, Rays};
 pub use schedule::{Scheduler, Stopped, render};
 

@@ -88,7 +88,7 @@ fn bands(region: Rect) -> impl Iterator<Item = Rect> {
     (region.y..end).step_by(height as usize).map(move |y| Rect { y, height: height.min(end - y), ..region })
 }
 
-fn steal(band: &Rect, samples: u32, draw: impl Fn(Rect) + Sync) {
+fn steal(band: &Rect, samples: u32, draw: impl Fn(Rect) + Sync + Send) {
     let edge = tile_edge(samples);
     let columns: Vec<u32> = (0..band.width).step_by(edge as usize).collect();
     let corners = (0..band.height).step_by(edge as usize).flat_map(|y| columns.iter().map(move |x| (*x, y)));
@@ -109,7 +109,7 @@ fn tile_edge(samples: u32) -> u32 {
     (pixels.isqrt().max(1).next_power_of_two()).clamp(MIN_TILE, MAX_TILE)
 }
 
-fn row_queue(band: &Rect, draw: impl Fn(Rect) + Sync) {
+fn row_queue(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
     let next = AtomicU32::new(0);
     rayon::broadcast(|_| {
         loop {
@@ -122,7 +122,7 @@ fn row_queue(band: &Rect, draw: impl Fn(Rect) + Sync) {
     });
 }
 
-fn static_rows(band: &Rect, draw: impl Fn(Rect) + Sync) {
+fn static_rows(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
     rayon::broadcast(|thread| {
         let part = |i: usize| (u64::from(band.height) * i as u64 / thread.num_threads() as u64) as u32;
         let (first, end) = (part(thread.index()), part(thread.index() + 1));

@@ -12,6 +12,9 @@ use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2};
 mod items;
 mod trace;
 
+#[cfg(test)]
+mod tests;
+
 use items::Item;
 
 /// A shape in its place.
