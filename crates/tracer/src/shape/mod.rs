@@ -5,19 +5,21 @@ use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
 mod arithmetic;
 mod check;
-mod mesh_data;
+mod facet;
 mod solid_angle;
 
 mod cuboid;
 mod cylinder;
 mod disk;
+mod mesh;
 mod plane;
 mod polygon;
 mod rectangle;
 mod sphere;
+mod triangle;
 mod tube;
 
-pub use mesh_data::MeshData;
+pub use mesh::MeshData;
 pub use sphere::{cross_sphere, intersect_sphere, sphere_surface};
 
 /// What a ray found: 16 bytes, all that traversal carries.
@@ -92,9 +94,11 @@ closed_set! {
         plane::Plane,
         disk::Disk,
         rectangle::Rectangle,
+        triangle::Triangle,
         polygon::Polygon,
         cuboid::Cuboid,
         cylinder::Cylinder,
         tube::Tube,
+        mesh::Mesh,
     }
 }

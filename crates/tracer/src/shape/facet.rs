@@ -1,0 +1,59 @@
+//! One triangle with what its corners carry: position, shading normal, surface coordinates.
+
+use crate::surface::Surface;
+use juggler_math::{DVec3, Vec2, Vec3, robust};
+
+/// A triangle of a mesh, or one that stands alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// Corners; the front is where they run counter-clockwise.
+    pub corners: [Vec3; 3],
+    /// Shading normals at the corners, of any length.
+    pub normals: Option<[Vec3; 3]>,
+    /// Surface coordinates of the corners.
+    pub uvs: Option<[Vec2; 3]>,
+}
+
+impl Facet {
+    /// Twice the area as a vector along the normal; zero exactly for corners on one line.
+    pub fn winding(&self) -> DVec3 {
+        let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
+        (b - a).cross(c - a)
+    }
+
+    /// Area in square scene units.
+    pub fn area(&self) -> f64 {
+        0.5 * self.winding().length()
+    }
+
+    /// The point and the geometric normal at barycentrics of the second and third corner.
+    pub fn point(&self, at: Vec2) -> (Vec3, Vec3) {
+        // In f64, weights that sum to one keep the point in the plane whatever their own rounding.
+        let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
+        let point = a + (b - a) * f64::from(at.x) + (c - a) * f64::from(at.y);
+        (point.as_vec3(), self.winding().normalize_or(DVec3::Y).as_vec3())
+    }
+
+    /// The surface at barycentrics of the second and third corner. Without surface coordinates of its own, it
+    /// gives the barycentrics.
+    pub fn surface(&self, at: Vec2) -> Surface {
+        let (point, normal) = self.point(at);
+        let [a, b, c] = self.corners;
+        let size = (b - a).abs().max((c - a).abs()).max_element();
+        // The triangle test is in f32, relative to the corners' distance; the point itself is only rounded.
+        let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(12) * size;
+        let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
+        Surface { shading_normal: self.shading_normal(normal, at), ..Surface::new(point, error, normal, uv) }
+    }
+
+    /// The interpolated normal, kept on the front: a triangle wound against its normals has them turned round,
+    /// and what still dips below the surface is mirrored up again.
+    fn shading_normal(&self, normal: Vec3, at: Vec2) -> Vec3 {
+        let Some([a, b, c]) = self.normals.map(|normals| normals.map(|n| n.normalize_or_zero())) else { return normal };
+        let turned = if (a + b + c).dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        let smooth = (a * (1.0 - at.x - at.y) + b * at.x + c * at.y) * turned;
+        let height = smooth.dot(normal);
+        let above = if height < 0.0 { smooth - normal * (2.0 * height) } else { smooth };
+        above.normalize_or(normal)
+    }
+}

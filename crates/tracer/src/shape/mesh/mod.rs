@@ -1,0 +1,166 @@
+//! A triangle mesh over a bounding volume hierarchy of its own.
+//!
+//! ```
+//! use juggler_tracer::shape::{AnyShape, Mesh, MeshData};
+//! let shape: AnyShape = serde_json::from_str(
+//!     r#"{"mesh": {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}}"#,
+//! )?;
+//! let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Into::into).to_vec();
+//! let data = MeshData { positions, triangles: vec![[0, 1, 2]], ..MeshData::default() };
+//! assert_eq!(shape, Mesh::from(data).into());
+//! let from_file: AnyShape = serde_json::from_str(r#"{"mesh": {"file": "models/cow.ply"}}"#)?;
+//! assert_eq!(from_file, Mesh::from_file("models/cow.ply").into());
+//! # Ok::<(), serde_json::Error>(())
+//! ```
+
+use super::solid_angle::{area_pdf, area_sample, pick};
+use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use crate::surface::Surface;
+use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
+use prepared::Prepared;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+mod data;
+mod prepared;
+
+pub use data::MeshData;
+
+/// A surface of triangles: from a file, or given here. Its front is where the corners of a triangle run
+/// counter-clockwise.
+///
+/// Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the corners of each triangle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Mesh {
+    /// A model file (PLY, OBJ, STL, glTF), relative to the scene file, instead of the arrays below.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Corner positions in scene units.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<[f32; 3]>")]
+    pub positions: Vec<Vec3>,
+    /// Three numbers a triangle, each the place of a corner in `positions`, counted from 0.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub triangles: Vec<[u32; 3]>,
+    /// Shading normals, blended over each triangle: none, or one per position. A zero one counts as missing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<[f32; 3]>")]
+    pub normals: Vec<Vec3>,
+    /// Surface coordinates: none, or one per position.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<[f32; 2]>")]
+    pub uvs: Vec<Vec2>,
+    /// What [`Shape::prepare`] makes of the arrays above, which it empties: clones then share it.
+    #[serde(skip)]
+    prepared: Option<Arc<Prepared>>,
+}
+
+impl From<MeshData> for Mesh {
+    fn from(data: MeshData) -> Self {
+        let MeshData { positions, triangles, normals, uvs } = data;
+        Self { positions, triangles, normals, uvs, ..Self::default() }
+    }
+}
+
+impl Mesh {
+    /// A mesh whose arrays are in a file, to be given to [`Mesh::load`] before [`Shape::prepare`].
+    pub fn from_file(file: impl Into<String>) -> Self {
+        Self { file: Some(file.into()), ..Self::default() }
+    }
+
+    /// Takes what the file holds. An error when the description has arrays of its own beside the file.
+    pub fn load(&mut self, data: MeshData) -> Result<(), InvalidShape> {
+        if !self.positions.is_empty() || !self.triangles.is_empty() {
+            return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
+        }
+        *self = Self { file: self.file.take(), ..data.into() };
+        Ok(())
+    }
+
+    /// The arrays, once prepared.
+    pub fn data(&self) -> Option<&MeshData> {
+        self.prepared.as_deref().map(Prepared::data)
+    }
+
+    /// What is odd about the mesh and yet no error, in words: triangles that were ignored.
+    pub fn warnings(&self) -> Vec<String> {
+        match self.prepared.as_ref().map_or(0, |p| p.degenerate()) {
+            0 => Vec::new(),
+            1 => vec!["1 degenerate triangle ignored".to_owned()],
+            count => vec![format!("{count} degenerate triangles ignored")],
+        }
+    }
+
+    fn take_data(&mut self) -> MeshData {
+        MeshData {
+            positions: std::mem::take(&mut self.positions),
+            triangles: std::mem::take(&mut self.triangles),
+            normals: std::mem::take(&mut self.normals),
+            uvs: std::mem::take(&mut self.uvs),
+        }
+    }
+}
+
+impl Shape for Mesh {
+    fn prepare(&mut self) -> Result<(), InvalidShape> {
+        if self.prepared.is_some() && self.triangles.is_empty() {
+            return Ok(());
+        }
+        if self.triangles.is_empty() {
+            return Err(match &self.file {
+                Some(file) => check::invalid("file", format!("`{file}` holds no triangles")),
+                None => check::invalid("triangles", "a mesh must have `file`, or `positions` and `triangles`"),
+            });
+        }
+        let data = self.take_data();
+        self.prepared = Some(Arc::new(Prepared::new(data)?));
+        Ok(())
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.prepared.as_ref().map_or(Aabb::EMPTY, |p| p.bounds())
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let hit = self.prepared.as_ref()?.bvh().closest(ray)?;
+        Some(Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index })
+    }
+
+    fn occludes(&self, ray: &Ray) -> bool {
+        self.prepared.as_ref().is_some_and(|p| p.bvh().any(ray))
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let facet = self.prepared.as_ref().and_then(|p| p.data().facet(hit.part as usize));
+        facet.map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |facet| facet.surface(hit.uv))
+    }
+
+    fn area(&self) -> f32 {
+        self.prepared.as_ref().map_or(0.0, |p| p.area())
+    }
+
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
+        let prepared = self.prepared.as_ref()?;
+        let (index, rest) = pick(prepared.running_areas(), u.x)?;
+        let at = warp::uniform_triangle(Vec2::new(rest, u.y)).truncate();
+        let (point, normal) = prepared.data().facet(index)?.point(at);
+        area_sample(from, point, normal, prepared.area())
+    }
+
+    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
+        area_pdf(self, from, direction, self.area())
+    }
+
+    fn triangles(&self) -> usize {
+        self.data().map_or(self.triangles.len(), |data| data.triangles.len())
+    }
+
+    fn heap_bytes(&self) -> usize {
+        self.prepared.as_ref().map_or(0, |p| p.heap_bytes())
+    }
+}
+
+#[cfg(test)]
+mod examples;
