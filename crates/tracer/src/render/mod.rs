@@ -19,7 +19,7 @@ mod wavefront;
 mod tests;
 
 pub use control::{Control, Rays};
-pub use schedule::{Scheduler, Stopped, render};
+pub use schedule::{Scheduler, Stopped, band_bytes, render};
 
 /// A rectangle of pixels; x to the right, y down, from the picture's top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -65,6 +65,11 @@ pub fn render<E: From<Stopped>>(
     Ok(())
 }
 
+/// Bytes that [`render`] holds at once for finished pixels.
+pub fn band_bytes(region: Rect) -> u64 {
+    bands(region).next().map_or(0, |band| band.area() * size_of::<Rgb>() as u64)
+}
+
 /// A poisoned lock only says that another thread panicked, which rayon passes on anyway.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
