@@ -4,7 +4,7 @@
 //! {"solid": {"color": [0, 0, 0]}}
 //! ```
 
-use super::Background;
+use super::{Background, InvalidBackground, check_color};
 use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,10 @@ pub struct Solid {
 }
 
 impl Background for Solid {
+    fn check(&self) -> Result<(), InvalidBackground> {
+        check_color("color", self.color)
+    }
+
     fn radiance(&self, _ray: &Ray) -> Rgb {
         self.color
     }
@@ -27,6 +31,6 @@ impl Background for Solid {
 impl Solid {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        vec![Self::default()]
+        vec![Self::default(), Self { color: Rgb::new(0.1, 0.2, 3.0) }]
     }
 }

@@ -2,7 +2,16 @@
 
 use juggler_math::{Rgb, Vec2, Vec3};
 
+mod ambient;
+mod directional;
 mod point;
+mod source;
+mod spot;
+
+#[cfg(test)]
+mod contract;
+
+pub use source::{Attenuation, Extent};
 
 /// Light that would arrive at a point if nothing stood in the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,12 +22,25 @@ pub struct LightSample {
     pub distance: f32,
     /// What arrives there, before the surface's own factors: the classic intensity, attenuation included.
     pub radiance: Rgb,
-    /// Density per steradian with which `wi` was chosen; 1 for a light that is a single point.
+    /// What to divide by, so that the mean over samples is the light that arrives: the density per steradian
+    /// with which `wi` was chosen. 1 for the classic lights, whose places all count the same.
     pub pdf: f32,
+}
+
+/// Why a light cannot be: the field at fault and what it should be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct InvalidLight {
+    /// The field, as in the scene file.
+    pub field: &'static str,
+    /// What is wrong, and what would be right.
+    pub message: String,
 }
 
 /// A source of light.
 pub trait Light: Send + Sync {
+    /// Checks the numbers; called once, before the light is used.
+    fn check(&self) -> Result<(), InvalidLight>;
     /// Light from one place of the source, chosen by `u` in the unit square; `None` when nothing arrives.
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample>;
     /// How many places of the source the classic integrator asks per sample: more than 1 for soft shadows.
@@ -29,11 +51,51 @@ pub trait Light: Send + Sync {
     fn ambient(&self) -> Rgb {
         Rgb::BLACK
     }
-    /// Total power, for choosing among many; `world_radius` bounds the scene.
+    /// Total power (its luminance), for choosing among many; `world_radius` bounds the scene. A light that
+    /// does not fall off with the square of the distance counts by what arrives at that radius.
     fn power(&self, world_radius: f32) -> f32;
 }
 
 closed_set! {
     /// Every light. In JSON: `{"point": {"position": [0, 4, 0], "color": [1, 1, 1], "intensity": 60}}`.
-    pub enum AnyLight: Light { point::Point }
+    pub enum AnyLight: Light {
+        ambient::Ambient,
+        directional::Directional,
+        point::Point,
+        spot::Spot,
+    }
+}
+
+/// Refuses a number outside `low..=high`, and what is no number.
+fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidLight> {
+    if value >= low && value <= high {
+        return Ok(());
+    }
+    let range = if high == f32::MAX { format!("{low} or more") } else { format!("between {low} and {high}") };
+    Err(InvalidLight { field, message: format!("`{field}` must be {range}, it is {value}") })
+}
+
+fn check_color(color: Rgb, intensity: f32) -> Result<(), InvalidLight> {
+    color.to_array().iter().try_for_each(|v| in_range("color", *v, 0.0, f32::MAX))?;
+    in_range("intensity", intensity, 0.0, f32::MAX)?;
+    if (color * intensity).is_finite() {
+        return Ok(());
+    }
+    Err(InvalidLight { field: "intensity", message: "`color` times `intensity` is too large a number".into() })
+}
+
+fn check_position(position: Vec3) -> Result<(), InvalidLight> {
+    if position.is_finite() {
+        return Ok(());
+    }
+    Err(InvalidLight { field: "position", message: "`position` must be finite".into() })
+}
+
+fn check_direction(direction: Vec3) -> Result<(), InvalidLight> {
+    let squared = direction.length_squared();
+    if squared >= f32::MIN_POSITIVE && squared.is_finite() {
+        return Ok(());
+    }
+    let message = format!("`direction` must have a length, neither zero nor without end; it is {direction}");
+    Err(InvalidLight { field: "direction", message })
 }

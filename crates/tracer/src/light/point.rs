@@ -1,44 +1,71 @@
-//! A point that shines the same in every direction.
+//! A light that shines the same in every direction, from a point or from something with a size.
 //!
 //! ```json
-//! {"point": {"position": [0, 4, 0], "color": [1, 1, 1], "intensity": 60}}
+//! {"point": {"position": [-564, 686, 147], "color": [1, 1, 1], "intensity": 1,
+//!     "attenuation": {"constant": 1, "quadratic": 0}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
 //! ```
 
-use super::{Light, LightSample};
+use super::source::{self, Attenuation, Extent};
+use super::{InvalidLight, Light, LightSample, check_color};
 use juggler_math::{Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A point that shines the same in every direction.
+/// A light that shines the same in every direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Point {
-    /// Where it is, world space.
+    /// Where its centre is, world space.
     #[schemars(with = "[f32; 3]")]
     pub position: Vec3,
     /// Its colour.
     pub color: Rgb,
-    /// Factor on the colour.
+    /// Factor on the colour: what arrives at distance 1 with the default attenuation.
     #[schemars(range(min = 0))]
     pub intensity: f32,
+    /// How its light falls off with distance.
+    pub attenuation: Attenuation,
+    /// A size, for soft shadows; without it shadows are hard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extent: Option<Extent>,
+    /// How many places of the extent are asked per sample of the picture.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub samples: u32,
 }
 
 impl Default for Point {
     fn default() -> Self {
-        Self { position: Vec3::ZERO, color: Rgb::WHITE, intensity: 1.0 }
+        Self {
+            position: Vec3::ZERO,
+            color: Rgb::WHITE,
+            intensity: 1.0,
+            attenuation: Attenuation::default(),
+            extent: None,
+            samples: 1,
+        }
     }
 }
 
 impl Light for Point {
-    fn sample(&self, from: Vec3, _u: Vec2) -> Option<LightSample> {
-        let to = self.position - from;
-        let distance = to.length();
-        let radiance = self.color * (self.intensity / (distance * distance));
-        (distance > 0.0).then(|| LightSample { wi: to / distance, distance, radiance, pdf: 1.0 })
+    fn check(&self) -> Result<(), InvalidLight> {
+        check_color(self.color, self.intensity)?;
+        source::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
-    fn power(&self, _world_radius: f32) -> f32 {
-        4.0 * std::f32::consts::PI * self.intensity * self.color.luminance()
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
+        let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
+        let radiance = self.color * (self.intensity * arrival.factor);
+        let arrives = radiance.is_finite() && !radiance.is_black();
+        arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
+    }
+
+    fn shadow_samples(&self) -> u32 {
+        if self.extent.is_some() { self.samples } else { 1 }
+    }
+
+    fn power(&self, world_radius: f32) -> f32 {
+        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        4.0 * std::f32::consts::PI * at_radius * (self.color * self.intensity).luminance()
     }
 }
 
@@ -46,6 +73,53 @@ impl Light for Point {
 impl Point {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }]
+        let juggler = Self {
+            position: Vec3::new(-564.0, 686.0, 147.0),
+            attenuation: Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 },
+            extent: Some(Extent::Sphere { radius: 10.0 }),
+            ..Self::default()
+        };
+        let chess = Self {
+            position: Vec3::new(0.0, 0.0, 300.0),
+            attenuation: Attenuation { constant: 1.0, linear: 8e-5, quadratic: 8e-5 },
+            extent: Some(Extent::Square { side: 15.0 }),
+            color: Rgb::new(1.0, 0.5, 0.25),
+            intensity: 3.0,
+            samples: 16,
+            ..Self::default()
+        };
+        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn falls_off_as_stated() {
+        for (attenuation, expected) in [
+            (r#"{}"#, [1.0, 0.25, 1e-4]),
+            (r#"{"constant": 1, "quadratic": 0}"#, [1.0, 1.0, 1.0]),
+            (r#"{"constant": 1, "linear": 0.5, "quadratic": 0.25}"#, [4.0 / 7.0, 1.0 / 3.0, 1.0 / 2551.0]),
+            (r#"{"linear": 2, "quadratic": 0}"#, [0.5, 0.25, 0.005]),
+        ] {
+            let json = format!(r#"{{"position": [1, 2, 3], "intensity": 8, "attenuation": {attenuation}}}"#);
+            let light: Point = serde_json::from_str(&json).unwrap();
+            for (distance, expected) in [1.0f32, 2.0, 100.0].into_iter().zip(expected) {
+                let from = Vec3::new(1.0, 2.0 - distance * 0.6, 3.0 + distance * 0.8);
+                let sample = light.sample(from, Vec2::ZERO).unwrap();
+                assert!((sample.radiance.g / (8.0 * expected) - 1.0).abs() < 1e-6, "{json} {distance} {sample:?}");
+                assert!((sample.distance - distance).abs() < 1e-5 * distance && sample.pdf == 1.0);
+                assert!((sample.wi - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn only_a_size_needs_many_samples() {
+        let many = Point { samples: 16, ..Point::default() };
+        assert_eq!(many.shadow_samples(), 1);
+        assert_eq!(Point { extent: Some(Extent::Sphere { radius: 1.0 }), ..many }.shadow_samples(), 16);
     }
 }

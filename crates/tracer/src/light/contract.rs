@@ -1,0 +1,168 @@
+//! What every light must keep, and the shadows of those with a size.
+
+use super::*;
+use juggler_math::testing::{Random, chi_squared, chi_squared_directions, close, close3};
+use juggler_math::warp;
+
+const SIGNIFICANCE: f64 = 1e-3;
+
+fn point(position: Vec3, extent: Extent) -> Point {
+    Point { position, extent: Some(extent), ..Point::default() }
+}
+
+/// The place of the light that a sample goes to.
+fn place(from: Vec3, sample: &LightSample) -> Vec3 {
+    from + sample.wi * sample.distance
+}
+
+#[test]
+fn samples_are_finite_and_unit_wherever_they_are_asked() {
+    let mut random = Random::new(91);
+    for light in AnyLight::examples() {
+        light.check().unwrap();
+        assert!(light.ambient().is_finite() && light.shadow_samples() >= 1);
+        for size in [0.0, 1e-30, 1e-3, 1.0, 300.0, 1e6, 1e18, 1e30] {
+            for _ in 0..100 {
+                let from = random.point(size);
+                let Some(sample) = light.sample(from, random.vec2()) else { continue };
+                assert!(close(sample.wi.length(), 1.0, 1e-6), "{light:?} {from} {sample:?}");
+                assert!(sample.radiance.is_finite() && !sample.radiance.is_black() && sample.distance > 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn power_is_the_integral_over_directions() {
+    let mut random = Random::new(92);
+    for (light, centre) in AnyLight::examples().into_iter().filter_map(|light| match &light {
+        AnyLight::Point(point) => Some((light.clone(), point.position)),
+        AnyLight::Spot(spot) => Some((light.clone(), spot.position)),
+        _ => None,
+    }) {
+        let (radius, count) = (50.0f32, 200_000);
+        let mut sum = 0.0;
+        for _ in 0..count {
+            let from = centre + warp::uniform_sphere(random.vec2()) * radius;
+            sum += light.sample(from, random.vec2()).map_or(0.0, |sample| f64::from(sample.radiance.luminance()));
+        }
+        let power = sum / f64::from(count) * f64::from(warp::UNIFORM_SPHERE_PDF.recip() * radius * radius);
+        let stated = f64::from(light.power(radius));
+        assert!((power / stated - 1.0).abs() < 0.02, "{light:?}: {power} {stated}");
+    }
+    assert_eq!(Directional::default().power(2.0), 4.0 * std::f32::consts::PI);
+    assert_eq!(Ambient::default().power(2.0), 0.0);
+}
+
+#[test]
+fn places_of_a_sphere_lie_on_its_facing_half_evenly() {
+    let (centre, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, 40.0));
+    let light = point(centre, Extent::Sphere { radius: 5.0 });
+    let direction = |u| {
+        let offset = place(from, &light.sample(from, u)?) - centre;
+        assert!(close(offset.length(), 5.0, 1e-5) && offset.z > -1e-4, "{offset}");
+        Some(offset / 5.0)
+    };
+    let half = |w: Vec3| if w.z >= 0.0 { warp::uniform_hemisphere_pdf(w) } else { 0.0 };
+    chi_squared_directions(direction, half, 100_000, SIGNIFICANCE).unwrap();
+    // From inside too.
+    let sample = light.sample(centre + Vec3::X, Vec2::new(0.3, 0.8)).unwrap();
+    assert!(close(place(centre + Vec3::X, &sample).distance(centre), 5.0, 1e-5));
+}
+
+#[test]
+fn places_of_a_square_lie_on_it_evenly() {
+    let mut random = Random::new(93);
+    let (centre, from) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 7.0, 1.0));
+    let light = point(centre, Extent::Square { side: 2.0 });
+    let axis = (centre - from).normalize();
+    let frame = juggler_math::Frame::around(-axis);
+    let mut observed = [0.0; 64];
+    for _ in 0..64_000 {
+        let offset = place(from, &light.sample(from, random.vec2()).unwrap()) - centre;
+        assert!(offset.dot(axis).abs() < 1e-5);
+        let cell = |v: f32| (((v + 1.0) * 4.0) as usize).min(7);
+        observed[cell(offset.dot(frame.tangent)) * 8 + cell(offset.dot(frame.bitangent))] += 1.0;
+    }
+    chi_squared(&observed, &[1000.0; 64], SIGNIFICANCE).unwrap();
+}
+
+#[test]
+fn a_size_changes_directions_but_not_the_light_that_arrives() {
+    let mut random = Random::new(94);
+    let hard = Point { position: Vec3::new(0.0, 9.0, 0.0), intensity: 7.0, ..Point::default() };
+    for extent in [Extent::Sphere { radius: 2.0 }, Extent::Square { side: 3.0 }] {
+        let soft = Point { extent: Some(extent), ..hard.clone() };
+        let from = random.point(3.0);
+        let (a, b) = (hard.sample(from, Vec2::ZERO).unwrap(), soft.sample(from, random.vec2()).unwrap());
+        assert!(a.radiance == b.radiance && a.wi != b.wi);
+    }
+    let none = Point { extent: Some(Extent::Sphere { radius: 0.0 }), ..hard.clone() };
+    let (a, b) = (hard.sample(Vec3::X, Vec2::ZERO).unwrap(), none.sample(Vec3::X, random.vec2()).unwrap());
+    assert!(close3(a.wi, b.wi, 1e-6) && close(a.distance, b.distance, 1e-6));
+}
+
+/// Share of a light ten units above the origin that is seen past a half-plane five units up, which covers
+/// all x below `edge`.
+fn visible(extent: Extent, edge: f32) -> f64 {
+    let light = point(Vec3::new(0.0, 10.0, 0.0), extent);
+    let mut random = Random::new(95);
+    let count = 40_000;
+    let passes = (0..count).filter(|_| {
+        let sample = light.sample(Vec3::ZERO, random.vec2()).unwrap();
+        sample.wi.x * 5.0 / sample.wi.y >= edge
+    });
+    passes.count() as f64 / f64::from(count)
+}
+
+#[test]
+fn penumbra_of_a_square_is_linear() {
+    for (edge, share) in [(-1.1f32, 1.0), (-0.5, 0.75), (0.0, 0.5), (0.25, 0.375), (0.9, 0.05), (1.1, 0.0)] {
+        // The edge's shadow on the square of side 4 lies at twice its x.
+        let seen = visible(Extent::Square { side: 4.0 }, edge);
+        assert!((seen - share).abs() < 0.01, "{edge}: {seen}");
+    }
+}
+
+#[test]
+fn penumbra_of_a_sphere_is_a_cap() {
+    // Places c + r h with h in the lower half sphere are seen where 5 h_x - edge h_y >= edge 10 / r: a cap of the
+    // half sphere, of share 1 - τ where it does not reach over the rim, with τ = 2.5 edge / √(25 + edge²).
+    let tau = |edge: f64| 2.5 * edge / (25.0 + edge * edge).sqrt();
+    for (edge, share) in [(0.0, 0.5), (2.1, 1.0 - tau(2.1)), (-2.1, tau(2.1)), (2.2, 0.0), (-2.2, 1.0)] {
+        let seen = visible(Extent::Sphere { radius: 4.0 }, edge as f32);
+        assert!((seen - share).abs() < 0.01, "{edge}: {seen} {share}");
+    }
+}
+
+#[test]
+fn json_goes_round() {
+    for light in AnyLight::examples() {
+        let text = serde_json::to_string(&light).unwrap();
+        assert_eq!(serde_json::from_str::<AnyLight>(&text).unwrap(), light, "{text}");
+    }
+}
+
+#[test]
+fn says_what_is_wrong() {
+    for (json, field) in [
+        (r#"{"point": {"position": [0, 1e39, 0]}}"#, "position"),
+        (r#"{"point": {"color": [-1, 0, 0]}}"#, "color"),
+        (r#"{"point": {"intensity": -1}}"#, "intensity"),
+        (r#"{"point": {"intensity": 1e38, "color": [1e38, 0, 0]}}"#, "intensity"),
+        (r#"{"point": {"samples": 0}}"#, "samples"),
+        (r#"{"point": {"attenuation": {"quadratic": 0}}}"#, "attenuation"),
+        (r#"{"point": {"attenuation": {"linear": -1}}}"#, "attenuation.linear"),
+        (r#"{"point": {"extent": {"sphere": {"radius": -1}}}}"#, "extent.sphere.radius"),
+        (r#"{"spot": {"extent": {"square": {"side": 1e39}}}}"#, "extent.square.side"),
+        (r#"{"spot": {"beam_degrees": 40}}"#, "cutoff_degrees"),
+        (r#"{"spot": {"cutoff_degrees": 200}}"#, "cutoff_degrees"),
+        (r#"{"spot": {"beam_exponent": -1}}"#, "beam_exponent"),
+        (r#"{"spot": {"direction": [0, 0, 0]}}"#, "direction"),
+        (r#"{"directional": {"direction": [0, 1e39, 0]}}"#, "direction"),
+        (r#"{"ambient": {"intensity": 1e39}}"#, "intensity"),
+    ] {
+        let error = serde_json::from_str::<AnyLight>(json).unwrap().check().unwrap_err();
+        assert_eq!(error.field, field, "{json} {error}");
+    }
+}

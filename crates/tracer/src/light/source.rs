@@ -1,0 +1,121 @@
+//! What a point light and a spot light share: a place, a size, and light that falls off with distance.
+
+use super::{InvalidLight, check_position, in_range};
+use juggler_math::{Frame, Vec2, Vec3, warp};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How light falls off with the distance d from the light's centre: by the factor
+/// 1 / (constant + linear · d + quadratic · d²). The default is the inverse square of nature.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Attenuation {
+    /// Does not depend on the distance: 1 with the others 0 is light that never falls off.
+    #[schemars(range(min = 0))]
+    pub constant: f32,
+    /// Grows with the distance.
+    #[schemars(range(min = 0))]
+    pub linear: f32,
+    /// Grows with its square.
+    #[schemars(range(min = 0))]
+    pub quadratic: f32,
+}
+
+/// A size that casts soft shadows. Light still falls off from the centre, so that the size changes shadows
+/// and nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Extent {
+    /// A sphere: the half of its surface that faces the lit point shines, each place the same.
+    Sphere {
+        /// Radius, scene units.
+        #[schemars(range(min = 0))]
+        radius: f32,
+    },
+    /// A square that always faces the lit point.
+    Square {
+        /// Edge, scene units.
+        #[schemars(range(min = 0))]
+        side: f32,
+    },
+}
+
+impl Default for Attenuation {
+    fn default() -> Self {
+        Self { constant: 0.0, linear: 0.0, quadratic: 1.0 }
+    }
+}
+
+impl Attenuation {
+    /// The factor at a distance.
+    #[inline]
+    pub fn at(&self, distance: f32) -> f32 {
+        1.0 / (self.constant + distance * (self.linear + distance * self.quadratic))
+    }
+}
+
+/// A place on a light and how to get there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    /// Unit direction towards the light's centre.
+    pub towards_centre: Vec3,
+    /// Unit direction towards the place.
+    pub wi: Vec3,
+    /// Distance of the place.
+    pub distance: f32,
+    /// Factor on the light's colour, above 0 and finite.
+    pub factor: f32,
+}
+
+/// Goes from a point to one place of a light, chosen by `u`; `None` at the light's very centre and too far off.
+#[inline]
+pub(super) fn reach(
+    centre: Vec3,
+    extent: Option<Extent>,
+    attenuation: &Attenuation,
+    from: Vec3,
+    u: Vec2,
+) -> Option<Arrival> {
+    let to_centre = centre - from;
+    let distance = to_centre.length();
+    let factor = attenuation.at(distance);
+    if !(distance > 0.0 && distance.is_finite() && factor > 0.0 && factor.is_finite()) {
+        return None;
+    }
+    let towards_centre = to_centre / distance;
+    let Some(extent) = extent else {
+        return Some(Arrival { towards_centre, wi: towards_centre, distance, factor });
+    };
+    let frame = Frame::around(-towards_centre);
+    let offset = match extent {
+        Extent::Sphere { radius } => frame.to_world(warp::uniform_hemisphere(u)) * radius,
+        Extent::Square { side } => (frame.tangent * (u.x - 0.5) + frame.bitangent * (u.y - 0.5)) * side,
+    };
+    let to = to_centre + offset;
+    let distance = to.length();
+    (distance > 0.0).then(|| Arrival { towards_centre, wi: to / distance, distance, factor })
+}
+
+/// Checks the fields that both lights share.
+pub(super) fn check(
+    position: Vec3,
+    extent: Option<Extent>,
+    attenuation: &Attenuation,
+    samples: u32,
+) -> Result<(), InvalidLight> {
+    check_position(position)?;
+    let Attenuation { constant, linear, quadratic } = *attenuation;
+    in_range("attenuation.constant", constant, 0.0, f32::MAX)?;
+    in_range("attenuation.linear", linear, 0.0, f32::MAX)?;
+    in_range("attenuation.quadratic", quadratic, 0.0, f32::MAX)?;
+    if constant + linear + quadratic == 0.0 {
+        let message = "one of `constant`, `linear` and `quadratic` must be above 0".into();
+        return Err(InvalidLight { field: "attenuation", message });
+    }
+    match extent {
+        Some(Extent::Sphere { radius }) => in_range("extent.sphere.radius", radius, 0.0, f32::MAX)?,
+        Some(Extent::Square { side }) => in_range("extent.square.side", side, 0.0, f32::MAX)?,
+        None => {}
+    }
+    in_range("samples", samples as f32, 1.0, 10_000.0)
+}

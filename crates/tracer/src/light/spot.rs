@@ -1,0 +1,184 @@
+//! A point light that shines into a cone.
+//!
+//! ```json
+//! {"spot": {"position": [240, 240, 200], "direction": [-2.4, -2.4, -1], "color": [1, 1, 1], "intensity": 0.5,
+//!     "attenuation": {"constant": 1, "linear": 4e-6, "quadratic": 4e-6}, "beam_degrees": 30, "cutoff_degrees": 90}}
+//! ```
+//!
+//! With θ the angle between the axis and the direction from the light's centre, light is full up to
+//! `beam_degrees`, falls linearly with θ to nothing at `cutoff_degrees`, and is multiplied by
+//! max(0, cos θ)^`beam_exponent`. (The teaching engine's fall-off angle is the difference of the two; its first
+//! formula has an exponent of 1 and no edge: both angles 90.)
+
+use super::source::{self, Attenuation, Extent};
+use super::{InvalidLight, Light, LightSample, check_color, check_direction, in_range};
+use juggler_math::{Rgb, Vec2, Vec3, fun};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A point light that shines into a cone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Spot {
+    /// Where its centre is, world space.
+    #[schemars(with = "[f32; 3]")]
+    pub position: Vec3,
+    /// Where it shines, any length.
+    #[schemars(with = "[f32; 3]")]
+    pub direction: Vec3,
+    /// Its colour.
+    pub color: Rgb,
+    /// Factor on the colour: what arrives on the axis at distance 1 with the default attenuation.
+    #[schemars(range(min = 0))]
+    pub intensity: f32,
+    /// How its light falls off with distance.
+    pub attenuation: Attenuation,
+    /// Angle from the axis up to which it shines in full.
+    #[schemars(range(min = 0, max = 180))]
+    pub beam_degrees: f32,
+    /// Angle from the axis beyond which it does not shine; `beam_degrees` or more.
+    #[schemars(range(min = 0, max = 180))]
+    pub cutoff_degrees: f32,
+    /// Exponent of the cosine of the angle from the axis: gathers light around the axis; 0 leaves it even.
+    #[schemars(range(min = 0))]
+    pub beam_exponent: f32,
+    /// A size, for soft shadows; without it shadows are hard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extent: Option<Extent>,
+    /// How many places of the extent are asked per sample of the picture.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub samples: u32,
+}
+
+impl Default for Spot {
+    fn default() -> Self {
+        Self {
+            position: Vec3::ZERO,
+            direction: Vec3::NEG_Y,
+            color: Rgb::WHITE,
+            intensity: 1.0,
+            attenuation: Attenuation::default(),
+            beam_degrees: 25.0,
+            cutoff_degrees: 30.0,
+            beam_exponent: 0.0,
+            extent: None,
+            samples: 1,
+        }
+    }
+}
+
+impl Spot {
+    /// The share of light at an angle with cosine `cos` from the axis.
+    fn share(&self, cos: f32) -> f32 {
+        let angle = fun::acos(cos.clamp(-1.0, 1.0));
+        let (beam, cutoff) = (self.beam_degrees.to_radians(), self.cutoff_degrees.to_radians());
+        let edge = if angle <= beam {
+            1.0
+        } else if angle < cutoff {
+            (cutoff - angle) / (cutoff - beam)
+        } else {
+            return 0.0;
+        };
+        if self.beam_exponent == 0.0 { edge } else { edge * fun::powf(cos.max(0.0), self.beam_exponent) }
+    }
+}
+
+impl Light for Spot {
+    fn check(&self) -> Result<(), InvalidLight> {
+        check_color(self.color, self.intensity)?;
+        check_direction(self.direction)?;
+        in_range("beam_degrees", self.beam_degrees, 0.0, 180.0)?;
+        in_range("cutoff_degrees", self.cutoff_degrees, self.beam_degrees, 180.0)?;
+        in_range("beam_exponent", self.beam_exponent, 0.0, f32::MAX)?;
+        source::check(self.position, self.extent, &self.attenuation, self.samples)
+    }
+
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
+        let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
+        let cos = -arrival.towards_centre.dot(self.direction.normalize_or_zero());
+        let radiance = self.color * (self.intensity * arrival.factor * self.share(cos));
+        let arrives = radiance.is_finite() && !radiance.is_black();
+        arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
+    }
+
+    fn shadow_samples(&self) -> u32 {
+        if self.extent.is_some() { self.samples } else { 1 }
+    }
+
+    fn power(&self, world_radius: f32) -> f32 {
+        const STEPS: u16 = 512;
+        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        // Over bands of equal solid angle within the cut-off, by midpoints.
+        let size = 1.0 - fun::cos(self.cutoff_degrees.to_radians());
+        let share = |i: u16| self.share(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
+        let mean = (0..STEPS).map(share).sum::<f32>() / f32::from(STEPS);
+        std::f32::consts::TAU * size * mean * at_radius * (self.color * self.intensity).luminance()
+    }
+}
+
+#[cfg(test)]
+impl Spot {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let chess = Self {
+            position: Vec3::new(240.0, 240.0, 200.0),
+            direction: Vec3::new(-2.4, -2.4, -1.0),
+            attenuation: Attenuation { constant: 1.0, linear: 4e-6, quadratic: 4e-6 },
+            beam_degrees: 30.0,
+            cutoff_degrees: 90.0,
+            ..Self::default()
+        };
+        let cosine = Self {
+            beam_degrees: 90.0,
+            cutoff_degrees: 90.0,
+            beam_exponent: 3.0,
+            extent: Some(Extent::Square { side: 0.5 }),
+            samples: 4,
+            ..Self::default()
+        };
+        vec![Self::default(), chess, cosine]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What arrives one unit away, `degrees` off the axis.
+    fn at(spot: &Spot, degrees: f32) -> f32 {
+        let (sin, cos) = fun::sin_cos(degrees.to_radians());
+        spot.sample(Vec3::new(sin, -cos, 0.0), Vec2::ZERO).map_or(0.0, |sample| sample.radiance.r)
+    }
+
+    #[test]
+    fn full_in_the_beam_then_linear_then_nothing() {
+        let spot = Spot { beam_degrees: 30.0, cutoff_degrees: 90.0, ..Spot::default() };
+        for (degrees, share) in [(0.0, 1.0), (29.99, 1.0), (45.0, 0.75), (60.0, 0.5), (75.0, 0.25), (89.4, 0.01)] {
+            assert!((at(&spot, degrees) - share).abs() < 1e-5, "{degrees}: {}", at(&spot, degrees));
+        }
+        assert_eq!([90.01, 120.0, 180.0].map(|degrees| at(&spot, degrees)), [0.0; 3]);
+        let sharp = Spot { beam_degrees: 20.0, cutoff_degrees: 20.0, ..Spot::default() };
+        assert_eq!((at(&sharp, 19.99), at(&sharp, 20.01)), (1.0, 0.0));
+    }
+
+    #[test]
+    fn the_exponent_gathers_light_around_the_axis() {
+        let spot = Spot { beam_degrees: 180.0, cutoff_degrees: 180.0, beam_exponent: 2.0, ..Spot::default() };
+        for (degrees, share) in [(0.0, 1.0), (45.0, 0.5), (60.0, 0.25), (100.0, 0.0), (180.0, 0.0)] {
+            assert!((at(&spot, degrees) - share).abs() < 1e-6, "{degrees}");
+        }
+    }
+
+    #[test]
+    fn power_is_the_closed_form() {
+        use std::f32::consts::TAU;
+        let power = |beam: f32, cutoff: f32, exponent: f32| {
+            Spot { beam_degrees: beam, cutoff_degrees: cutoff, beam_exponent: exponent, ..Spot::default() }.power(7.0)
+        };
+        assert!((power(180.0, 180.0, 0.0) / (2.0 * TAU) - 1.0).abs() < 1e-4);
+        assert!((power(90.0, 90.0, 3.0) / (TAU / 4.0) - 1.0).abs() < 1e-4);
+        // Linear from b to c: 2π (1 - cos b + cos b - (sin c - sin b) / (c - b)).
+        let (b, c) = (30f32.to_radians(), 90f32.to_radians());
+        assert!((power(30.0, 90.0, 0.0) / (TAU * (1.0 - (fun::sin(c) - fun::sin(b)) / (c - b))) - 1.0).abs() < 1e-4);
+    }
+}
