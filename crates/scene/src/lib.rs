@@ -1,1 +1,25 @@
-//! scene
+//! From files of scenes to worlds that can be rendered:
+//!
+//! 1. [`document`]: texts into one tree that knows where everything was written, includes merged;
+//! 2. [`animate`] resolves every `"=expression"` for one frame;
+//! 3. the tree becomes a [`description`], the types that are the format;
+//! 4. [`compile`] places groups, looks up names, prepares shapes and makes a world.
+//!
+//! Whatever is wrong becomes a [`report`] with file, line, column, path and what was probably meant.
+
+pub mod animate;
+pub mod compile;
+pub mod description;
+pub mod document;
+pub mod expression;
+pub mod import;
+mod kind;
+pub mod path;
+pub mod report;
+mod scene;
+pub mod suggest;
+
+pub use compile::Compiled;
+pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};
+pub use report::{Problem, Problems, Severity};
+pub use scene::{Scene, SceneError};

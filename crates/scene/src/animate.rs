@@ -1,0 +1,158 @@
+//! Animation: a tree with expressions becomes, for one frame, a tree with numbers. The rest of the program
+//! only ever sees still scenes.
+
+use crate::document::{Member, Node, Place, Sources, Value};
+use crate::expression::{self, ExpressionError, FUNCTIONS, Names};
+use crate::path::{Path, Step};
+use crate::report::Finding;
+use crate::suggest;
+
+/// Parts of a scene in which a text that begins with `=` is just a text, or comes before all numbers.
+const PLAIN: [&str; 4] = ["title", "description", "animation", "variables"];
+/// Names that every expression may use.
+const GIVEN: [&str; 4] = ["frame", "frames", "seconds", "pi"];
+
+/// The tree at a frame (which may lie between two), with every mistake in an expression.
+pub fn resolve(tree: &Node, sources: &Sources, frame: f64) -> (Node, Vec<Finding>) {
+    let mut walk = Walk { names: given(tree, frame), sources, path: Path::root(), findings: Vec::new() };
+    walk.variables(tree);
+    let mut resolved = tree.clone();
+    if let Value::Object(members) = &mut resolved.value {
+        for (key, member) in members.iter_mut().filter(|(key, _)| !PLAIN.contains(&key.as_str())) {
+            walk.step(Step::Key(key.clone()), &mut member.node);
+        }
+        members.shift_remove("variables");
+    }
+    (resolved, walk.findings)
+}
+
+/// What expressions may use in any scene.
+fn given(tree: &Node, frame: f64) -> Names {
+    let number = |key: &str, default: f64| {
+        let node = tree.get("animation").and_then(|animation| animation.get(key));
+        match node.map(|node| &node.value) {
+            Some(Value::Number(number)) => number.as_f64().filter(|v| *v > 0.0).unwrap_or(default),
+            _ => default,
+        }
+    };
+    let frames = number("frames", 1.0);
+    let seconds = frame / number("frames_per_second", 30.0);
+    let values = [frame, frames, seconds, std::f64::consts::PI];
+    GIVEN.iter().map(|name| (*name).to_owned()).zip(values).collect()
+}
+
+struct Walk<'s> {
+    names: Names,
+    sources: &'s Sources,
+    path: Path,
+    findings: Vec<Finding>,
+}
+
+impl Walk<'_> {
+    fn variables(&mut self, tree: &Node) {
+        let Some(variables) = tree.get("variables") else { return };
+        if !matches!(variables.value, Value::Object(_)) {
+            let message = format!("expected an object of named numbers, found {}", variables.kind());
+            self.findings.push(Finding::error(message).at(&Path::root().key("variables")).on(variables.place));
+        }
+        for (name, member) in variables.members() {
+            self.path = Path::root().key("variables").key(name.as_str());
+            // After a mistake the name still exists, so that it is reported once only.
+            let value = self.variable(name, member).unwrap_or(1.0);
+            self.names.insert(name.clone(), value);
+        }
+        self.path = Path::root();
+    }
+
+    fn variable(&mut self, name: &str, member: &Member) -> Option<f64> {
+        if let Some(message) = unusable(name) {
+            self.findings.push(Finding::error(message).at(&self.path).on(member.key_place));
+            return None;
+        }
+        match &member.node.value {
+            Value::Number(number) => number.as_f64(),
+            Value::String(text) => self.evaluate(text, member.node.place),
+            _ => {
+                let message = format!("expected a number or an expression, found {}", member.node.kind());
+                self.findings.push(Finding::error(message).at(&self.path).on(member.node.place));
+                None
+            }
+        }
+    }
+
+    fn node(&mut self, node: &mut Node) {
+        match &mut node.value {
+            Value::String(text) if text.starts_with('=') => {
+                // After a mistake any number will do: this one passes most limits.
+                let value = self.evaluate(text, node.place).unwrap_or(1.0);
+                node.value = number(value);
+            }
+            Value::Array(elements) => {
+                elements.iter_mut().enumerate().for_each(|(i, element)| self.step(Step::Index(i), element));
+            }
+            Value::Object(members) => {
+                members.iter_mut().for_each(|(key, member)| self.step(Step::Key(key.clone()), &mut member.node));
+            }
+            _ => {}
+        }
+    }
+
+    fn step(&mut self, step: Step, node: &mut Node) {
+        if matches!(node.value, Value::Number(_) | Value::Bool(_) | Value::Null) {
+            return;
+        }
+        self.path.push(step);
+        self.node(node);
+        self.path.pop();
+    }
+
+    fn evaluate(&mut self, text: &str, place: Option<Place>) -> Option<f64> {
+        let expression = text.strip_prefix('=').unwrap_or(text);
+        match expression::evaluate(expression, &self.names) {
+            Ok(value) => Some(value),
+            Err(error) => {
+                let place = place.map(|place| self.inside(place, text, expression, &error));
+                let finding = Finding::error(error.message).at(&self.path).on(place);
+                self.findings.push(finding.maybe_help(error.help));
+                None
+            }
+        }
+    }
+
+    /// The part of a string at fault, when the string stands in the file as it is (no escapes in it).
+    fn inside(&self, place: Place, text: &str, expression: &str, error: &ExpressionError) -> Place {
+        let written =
+            self.sources.get(place.file).and_then(|source| source.text.get(place.start as usize..place.end as usize));
+        let literal = written.is_some_and(|written| written.len() == text.len() + 2);
+        let before = 1 + text.len() - expression.len();
+        let end = error.at.end.max(error.at.start + 1);
+        if literal { place.part(before + error.at.start, before + end) } else { place }
+    }
+}
+
+/// A whole number stays one, so that it can count things.
+fn number(value: f64) -> Value {
+    if value == value.trunc() && value.abs() < 9.0e15 {
+        return Value::Number((value as i64).into());
+    }
+    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
+}
+
+/// Why no variable can have this name.
+fn unusable(name: &str) -> Option<String> {
+    let mut characters = name.chars();
+    let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+    if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Some(format!("`{name}` cannot name a variable: names are made of letters, digits and _"));
+    }
+    if GIVEN.contains(&name) || FUNCTIONS.iter().any(|function| function.name == name) {
+        return Some(format!("`{name}` already means something in expressions"));
+    }
+    None
+}
+
+/// Suggests `=` for a text where a number should be: `"2*pi"` probably misses it.
+pub fn looks_like_expression(text: &str) -> bool {
+    let names: Names = GIVEN.iter().map(|name| ((*name).to_owned(), 1.0)).collect();
+    suggest::closest(text, ["inf", "nan"]).is_none() && expression::evaluate(text, &names).is_ok()
+}

@@ -1,0 +1,90 @@
+//! Materials: compiled once each, mistakes charged to the place where they stand.
+
+use crate::description::Description;
+use crate::path::Path;
+use crate::report::Finding;
+use juggler_tracer::material::{
+    AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
+};
+use juggler_tracer::texture::{Input, TextureTable};
+
+/// Compiles materials as objects ask for them.
+pub struct Materials {
+    compiler: MaterialCompiler,
+    plain: Option<MaterialId>,
+    glows: bool,
+}
+
+impl Materials {
+    /// Takes the scene's textures and named materials.
+    pub fn new(scene: &Description, findings: &mut Vec<Finding>) -> Self {
+        for (name, texture) in &scene.textures {
+            if let Err(invalid) = texture.check() {
+                let path = Path::root().key("textures").key(name.as_str()).key(crate::kind::name_of(texture));
+                findings.push(Finding::error(invalid.message).at(&path.join(&invalid.field)));
+            }
+        }
+        let textures = scene.textures.iter().map(|(name, texture)| (name.clone(), texture.clone()));
+        let named = scene.materials.iter().map(|(name, material)| (name.clone(), material.clone()));
+        let compiler = MaterialCompiler::new(TextureTable::new(textures), named);
+        Self { compiler, plain: None, glows: scene.materials.values().any(glows) }
+    }
+
+    /// The material that stands at `path`; a plain one where there is a mistake.
+    pub fn get(&mut self, material: &MaterialRef, path: &Path, findings: &mut Vec<Finding>) -> MaterialId {
+        let compiled = match material {
+            MaterialRef::Inline(material) => {
+                self.glows |= glows(material);
+                self.compiler.compile(material)
+            }
+            MaterialRef::Name(_) => self.compiler.material("", material),
+        };
+        compiled.unwrap_or_else(|error| {
+            findings.extend(finding(&error, path));
+            self.plain()
+        })
+    }
+
+    /// What things are made of that say nothing.
+    pub fn plain(&mut self) -> MaterialId {
+        let compiler = &mut self.compiler;
+        *self.plain.get_or_insert_with(|| match MaterialRef::default() {
+            MaterialRef::Inline(material) => compiler.compile(&material).unwrap_or(MaterialId(0)),
+            MaterialRef::Name(_) => MaterialId(0),
+        })
+    }
+
+    /// Whether any material gives off light of its own.
+    pub fn glows(&self) -> bool {
+        self.glows
+    }
+
+    /// All that was compiled; nothing when a named material is wrong.
+    pub fn finish(self, findings: &mut Vec<Finding>) -> MaterialTable {
+        self.compiler.finish().unwrap_or_else(|errors| {
+            for (name, error) in errors {
+                findings.extend(finding(&error, &Path::root().key("materials").key(name)));
+            }
+            MaterialTable::default()
+        })
+    }
+}
+
+/// Names that nothing has are left to [`crate::check`], which knows what was probably meant.
+fn finding(error: &MaterialError, path: &Path) -> Option<Finding> {
+    match error {
+        MaterialError::UnknownMaterial { .. } | MaterialError::UnknownTexture(_) => None,
+        error => Some(Finding::error(error.to_string()).at(&path.join(&error.path()))),
+    }
+}
+
+fn glows(material: &AnyMaterial) -> bool {
+    let inline = |material: &MaterialRef| match material {
+        MaterialRef::Inline(material) => glows(material),
+        MaterialRef::Name(_) => false,
+    };
+    match material {
+        AnyMaterial::Phong(phong) => !matches!(&phong.emission, Input::Value(color) if color.is_black()),
+        AnyMaterial::Checkerboard(board) => inline(&board.even) || inline(&board.odd),
+    }
+}

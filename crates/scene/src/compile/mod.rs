@@ -1,0 +1,113 @@
+//! Description → world: names looked up, groups placed, shapes prepared, gaps filled with defaults.
+
+use crate::description::{Description, Render};
+use crate::path::Path;
+use crate::report::Finding;
+use juggler_math::{Aabb, Transform, UVec2, Vec3};
+use juggler_tracer::background::AnyBackground;
+use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::material::MaterialTable;
+use juggler_tracer::world::{Object, World};
+
+mod count;
+mod defaults;
+mod materials;
+mod placing;
+
+pub use count::MAX_OBJECTS;
+
+/// A scene ready to be rendered.
+pub struct Compiled {
+    /// What can be seen.
+    pub world: World,
+    /// The cameras with their names, the one to render with first. There is always one.
+    pub cameras: Vec<(String, AnyCamera)>,
+    /// Size, samples, integrator and the like.
+    pub settings: Render,
+}
+
+/// Everything of a [`World`] but its hierarchy, which takes time to build.
+pub struct Assembly {
+    /// Every object in its place.
+    pub objects: Vec<Object>,
+    /// What they are made of.
+    pub materials: MaterialTable,
+    /// The lights.
+    pub lights: Vec<AnyLight>,
+    /// What lies behind everything.
+    pub background: AnyBackground,
+    /// Cameras by name, the chosen one first.
+    pub cameras: Vec<(String, AnyCamera)>,
+}
+
+impl Assembly {
+    /// Puts everything together; what cannot be is left out and reported.
+    pub fn of(scene: &Description) -> (Self, Vec<Finding>) {
+        let mut findings = Vec::new();
+        let mut materials = materials::Materials::new(scene, &mut findings);
+        let objects = match count::check(scene) {
+            Ok(()) => placing::place(scene, &mut materials, &mut findings),
+            Err(problems) => {
+                findings.extend(problems);
+                Vec::new()
+            }
+        };
+        let lit = !scene.lights.is_empty() || materials.glows();
+        let bounds = bounds(&objects);
+        let cameras = cameras(scene, &bounds, &mut findings);
+        let lights = if lit { scene.lights.clone() } else { defaults::lights(&bounds) };
+        let background = scene.background.clone().map(AnyBackground::from);
+        let background = background.unwrap_or_else(|| defaults::background(lit));
+        let materials = materials.finish(&mut findings);
+        (Self { objects, materials, lights, background, cameras }, findings)
+    }
+
+    /// Builds the world.
+    pub fn compile(self, settings: Render) -> Compiled {
+        let world = World::new(self.objects, self.materials, self.lights, self.background);
+        Compiled { world, cameras: self.cameras, settings }
+    }
+}
+
+/// A box around all objects that have an end.
+fn bounds(objects: &[Object]) -> Aabb {
+    let boxes = objects.iter().map(|object| object.transform.aabb(&object.shape.bounds()));
+    let bounds = boxes.filter(Aabb::is_finite).fold(Aabb::EMPTY, |all, one| all.union(one));
+    if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
+}
+
+/// The scene's cameras or the default one, each tried once; the chosen one first.
+fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> Vec<(String, AnyCamera)> {
+    let [width, height] = scene.render.size;
+    let size = UVec2::new(width, height);
+    let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
+    if let Some(camera) = &scene.camera {
+        try_camera(camera, size, &Path::root().key("camera"), findings);
+        cameras.push(("camera".into(), camera.clone()));
+        if !scene.cameras.is_empty() {
+            let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
+            findings.push(problem.at(&Path::root().key("camera")).help("move it into `cameras` under a name"));
+        }
+    }
+    for (name, camera) in &scene.cameras {
+        try_camera(camera, size, &Path::root().key("cameras").key(name.as_str()), findings);
+        cameras.push((name.clone(), camera.clone()));
+    }
+    if cameras.is_empty() {
+        cameras.push(("default".into(), defaults::camera(bounds, size)));
+    }
+    let chosen = scene.render.camera.as_ref();
+    if let Some(at) = chosen.and_then(|chosen| cameras.iter().position(|(name, _)| *name == chosen.0)) {
+        let first = cameras.remove(at);
+        cameras.insert(0, first);
+    }
+    cameras
+}
+
+fn try_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {
+    if let Err(invalid) = camera.project(size) {
+        let path = path.key(crate::kind::name_of(camera)).join(invalid.field);
+        findings.push(Finding::error(invalid.message).at(&path));
+    }
+}

@@ -1,0 +1,129 @@
+//! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder all come
+//! from here and from the families of `juggler_tracer`.
+
+use indexmap::IndexMap;
+use juggler_math::Rgb;
+use juggler_tracer::background::{AnyBackground, Solid};
+use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::material::AnyMaterial;
+use juggler_tracer::texture::AnyTexture;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+mod animation;
+mod object;
+mod render;
+mod spheres;
+mod transform;
+
+pub use animation::{Animation, Variable};
+pub use object::{GroupName, Object};
+pub use render::{CameraName, Render};
+pub use spheres::{Bead, Chain, ControlSphere, Limb};
+pub use transform::{Axes, Rotate, TransformStep};
+
+/// A scene: everything that decides a picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Scene")]
+pub struct Description {
+    /// Version of the format: 1.
+    #[schemars(range(min = 1, max = 1))]
+    pub version: u32,
+    /// Name of the scene.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub title: String,
+    /// What is to be seen, in a sentence.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+    /// Other scene files, relative to this one, whose textures, materials, groups, cameras, variables, lights and
+    /// objects belong to this scene too. Each file comes in once; the same name twice is an error.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub include: Vec<String>,
+    /// Length and pace of an animation.
+    #[serde(default, skip_serializing_if = "Animation::is_still")]
+    pub animation: Animation,
+    /// Named numbers for `"=expressions"`, in order: each may use those before it.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub variables: IndexMap<String, Variable>,
+    /// How the picture is made.
+    #[serde(default)]
+    pub render: Render,
+    /// The camera, when there is one. Without any, one is placed that sees all objects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<AnyCamera>,
+    /// Cameras by name; the first is used unless `render.camera` or the command line names another.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub cameras: IndexMap<String, AnyCamera>,
+    /// What rays see that leave the world. Black, or a soft sky when the scene has no light of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub background: Option<Backdrop>,
+    /// Textures by name.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub textures: IndexMap<String, AnyTexture>,
+    /// Materials by name.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub materials: IndexMap<String, AnyMaterial>,
+    /// Groups of objects by name, to be placed any number of times.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub groups: IndexMap<String, Vec<Object>>,
+    /// The lights. A scene without any, and without anything that glows, is lit softly from above the camera.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lights: Vec<AnyLight>,
+    /// What is to be seen.
+    #[serde(default)]
+    pub objects: Vec<Object>,
+}
+
+impl Default for Description {
+    fn default() -> Self {
+        Self {
+            version: 1,
+            title: String::new(),
+            description: String::new(),
+            include: Vec::new(),
+            animation: Animation::default(),
+            variables: IndexMap::new(),
+            render: Render::default(),
+            camera: None,
+            cameras: IndexMap::new(),
+            background: None,
+            textures: IndexMap::new(),
+            materials: IndexMap::new(),
+            groups: IndexMap::new(),
+            lights: Vec::new(),
+            objects: Vec::new(),
+        }
+    }
+}
+
+/// A background, or a colour that is short for the same colour everywhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Backdrop {
+    /// The same colour everywhere.
+    Color(Rgb),
+    /// A background.
+    Kind(AnyBackground),
+}
+
+impl From<Backdrop> for AnyBackground {
+    fn from(backdrop: Backdrop) -> Self {
+        match backdrop {
+            Backdrop::Color(color) => Solid { color }.into(),
+            Backdrop::Kind(kind) => kind,
+        }
+    }
+}
+
+impl From<Rgb> for Backdrop {
+    fn from(color: Rgb) -> Self {
+        Self::Color(color)
+    }
+}
+
+impl From<AnyBackground> for Backdrop {
+    fn from(kind: AnyBackground) -> Self {
+        Self::Kind(kind)
+    }
+}

@@ -1,0 +1,120 @@
+//! Objects: a shape, a group or a row of spheres, in its place.
+//!
+//! ```json
+//! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
+//! ```
+
+use super::{Axes, Chain, Limb, Rotate, TransformStep};
+use juggler_math::Vec3;
+use juggler_tracer::material::{AnyMaterial, MaterialRef};
+use juggler_tracer::shape::AnyShape;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Something to be seen: exactly one of `shape`, `group`, `objects`, `chain` and `limb`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Object {
+    /// A name for people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// One shape.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape: Option<AnyShape>,
+    /// All objects of one of the scene's groups.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<GroupName>,
+    /// Several objects as one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub objects: Option<Vec<Object>>,
+    /// Spheres in a row from one to another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub chain: Option<Chain>,
+    /// Spheres along two bones that meet in a joint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limb: Option<Limb>,
+    /// How it is moved, turned and scaled into place: steps in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub transform: Vec<TransformStep>,
+    /// What it is made of: a material, or the name of one of the scene's. Without one it takes that of the group
+    /// that holds it, or else a plain grey.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<MaterialRef>,
+}
+
+/// Name of one of the scene's groups.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupName(pub String);
+
+impl Object {
+    /// One shape around the origin.
+    pub fn new(shape: impl Into<AnyShape>) -> Self {
+        Self { shape: Some(shape.into()), ..Self::default() }
+    }
+
+    /// All objects of one of the scene's groups.
+    pub fn group(name: impl Into<String>) -> Self {
+        Self { group: Some(GroupName(name.into())), ..Self::default() }
+    }
+
+    /// Several objects as one.
+    pub fn several(objects: impl IntoIterator<Item = Self>) -> Self {
+        Self { objects: Some(objects.into_iter().collect()), ..Self::default() }
+    }
+
+    /// Spheres in a row.
+    pub fn chain(chain: Chain) -> Self {
+        Self { chain: Some(chain), ..Self::default() }
+    }
+
+    /// Spheres along two bones.
+    pub fn limb(limb: Limb) -> Self {
+        Self { limb: Some(limb), ..Self::default() }
+    }
+
+    /// Gives it a name.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// Moves it, after what was done before.
+    #[must_use]
+    pub fn at(self, x: f32, y: f32, z: f32) -> Self {
+        self.transformed(TransformStep::Translate(Vec3::new(x, y, z)))
+    }
+
+    /// Turns it about an axis through the origin, after what was done before.
+    #[must_use]
+    pub fn rotated(self, axis: impl Into<Vec3>, degrees: f32) -> Self {
+        self.transformed(TransformStep::Rotate(Rotate { axis: axis.into(), degrees }))
+    }
+
+    /// Scales it about the origin, after what was done before.
+    #[must_use]
+    pub fn scaled(self, factor: f32) -> Self {
+        self.transformed(TransformStep::Scale(Axes::All(factor)))
+    }
+
+    /// Adds any step, after what was done before.
+    #[must_use]
+    pub fn transformed(mut self, step: TransformStep) -> Self {
+        self.transform.push(step);
+        self
+    }
+
+    /// Makes it of a material.
+    #[must_use]
+    pub fn material(mut self, material: impl Into<AnyMaterial>) -> Self {
+        self.material = Some(MaterialRef::Inline(Box::new(material.into())));
+        self
+    }
+
+    /// Makes it of one of the scene's materials.
+    #[must_use]
+    pub fn material_named(mut self, name: impl Into<String>) -> Self {
+        self.material = Some(MaterialRef::Name(name.into()));
+        self
+    }
+}

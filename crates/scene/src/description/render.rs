@@ -1,0 +1,52 @@
+//! How the picture is made.
+//!
+//! ```json
+//! {"render": {"size": [640, 360], "samples": 16, "seed": 0, "integrator": "classic"}}
+//! ```
+
+use juggler_tracer::film::AnyFilter;
+use juggler_tracer::integrator::AnyIntegrator;
+use juggler_tracer::sampler::AnySampler;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How the picture is made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Render {
+    /// Width and height in pixels.
+    #[schemars(inner(range(min = 1, max = 65_536)))]
+    pub size: [u32; 2],
+    /// Samples per pixel.
+    #[schemars(range(min = 1, max = 16_777_216))]
+    pub samples: u32,
+    /// Number that all random choices come from: another seed, another noise.
+    pub seed: u64,
+    /// Name of the camera; the first when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraName>,
+    /// How light is followed.
+    pub integrator: AnyIntegrator,
+    /// How samples are spread.
+    pub sampler: AnySampler,
+    /// How samples make a pixel.
+    pub filter: AnyFilter,
+}
+
+impl Default for Render {
+    fn default() -> Self {
+        Self {
+            size: [640, 360],
+            samples: 16,
+            seed: 0,
+            camera: None,
+            integrator: AnyIntegrator::default(),
+            sampler: AnySampler::default(),
+            filter: AnyFilter::default(),
+        }
+    }
+}
+
+/// Name of one of the scene's cameras.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct CameraName(pub String);

@@ -1,0 +1,122 @@
+//! What is checked before a text is parsed: its encoding, size, depth and number of values.
+
+use std::ops::Range;
+
+/// Largest scene file, in bytes.
+pub const MAX_BYTES: u64 = 64 << 20;
+/// Deepest nesting of arrays and objects.
+pub const MAX_DEPTH: usize = 64;
+/// Most values in one file; larger meshes belong into mesh files.
+pub const MAX_VALUES: usize = 4_000_000;
+
+/// What is wrong with a text, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// Bytes at fault.
+    pub at: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+/// The text of a file's bytes: UTF-8, with or without a byte order mark.
+pub fn text(bytes: Vec<u8>) -> Result<String, String> {
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(format!("the file is larger than the limit of {} MiB", MAX_BYTES >> 20));
+    }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err("the file is UTF-16; scene files are UTF-8".into());
+    }
+    if bytes.contains(&0) {
+        return Err("this is not a text file: it holds a byte 0".into());
+    }
+    let mut text = String::from_utf8(bytes)
+        .map_err(|e| format!("this is not a text file in UTF-8: byte {} is invalid", e.utf8_error().valid_up_to()))?;
+    if text.starts_with('\u{feff}') {
+        text.drain(..'\u{feff}'.len_utf8());
+    }
+    Ok(text)
+}
+
+/// Counts depth and values, so that the parser behind it can neither overflow the stack nor eat the memory.
+pub fn check(text: &str) -> Result<(), Refused> {
+    let bytes = text.as_bytes();
+    let (mut depth, mut values, mut i) = (0_usize, 0_usize, 0);
+    while let Some(byte) = bytes.get(i) {
+        match byte {
+            b'"' => i = skip_string(bytes, i),
+            b'/' => i = skip_comment(bytes, i),
+            b'[' | b'{' => depth += 1,
+            b']' | b'}' => depth = depth.saturating_sub(1),
+            b',' => values += 1,
+            _ => {}
+        }
+        if depth > MAX_DEPTH {
+            let message = format!("arrays and objects are nested deeper than the limit of {MAX_DEPTH}");
+            return Err(Refused { at: i..i + 1, message, help: None });
+        }
+        if values > MAX_VALUES {
+            let message = format!("the file holds more than the limit of {MAX_VALUES} values");
+            let help = Some("put large meshes into files of their own (OBJ, PLY, STL)".into());
+            return Err(Refused { at: i..i + 1, message, help });
+        }
+        i += 1;
+    }
+    Ok(())
+}
+
+/// The position of the closing quote of the string that opens at `start`.
+fn skip_string(bytes: &[u8], start: usize) -> usize {
+    let mut i = start + 1;
+    while let Some(byte) = bytes.get(i) {
+        match byte {
+            b'"' => return i,
+            b'\\' => i += 2,
+            _ => i += 1,
+        }
+    }
+    i
+}
+
+/// The last position of the comment that opens at `start`; `start` itself when there is none.
+fn skip_comment(bytes: &[u8], start: usize) -> usize {
+    let rest = bytes.get(start + 1..).unwrap_or_default();
+    match rest.first() {
+        Some(b'/') => start + rest.iter().take_while(|b| !matches!(b, b'\n' | b'\r')).count(),
+        Some(b'*') => {
+            let inner = rest.get(1..).unwrap_or_default();
+            inner.windows(2).position(|pair| pair == b"*/").map_or(bytes.len(), |end| start + end + 3)
+        }
+        _ => start,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_counts_neither_strings_nor_comments() {
+        let quiet = format!("[\"{0}\\\"{0}\" /* {0} */ // {0}\n]", "[".repeat(100));
+        assert_eq!(check(&quiet), Ok(()));
+        let deep = format!("/* \" */ {}", "[".repeat(65));
+        assert_eq!(check(&deep).map_err(|e| e.at), Err(72..73));
+    }
+
+    #[test]
+    fn a_comment_of_one_star_does_not_close() {
+        assert_eq!(skip_comment(b"/*/ [ */ x", 0), 7);
+        assert_eq!(skip_comment(b"/**/ x", 0), 3);
+        assert_eq!(skip_comment(b"// ab\n", 0), 4);
+        assert_eq!(skip_comment(b"/ab", 0), 0);
+    }
+
+    #[test]
+    fn only_text_is_text() {
+        assert_eq!(text(b"\xef\xbb\xbf{}".to_vec()), Ok("{}".into()));
+        assert!(text(vec![0x89, b'P', b'N', b'G', 0]).is_err());
+        assert!(text(vec![b'a', 0xc3]).unwrap_err().contains("byte 1"));
+        assert!(text(vec![0xff, 0xfe, b'{', 0]).unwrap_err().contains("UTF-16"));
+    }
+}

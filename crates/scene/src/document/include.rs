@@ -1,0 +1,193 @@
+//! Several files into one tree: `"include": ["materials.json"]`.
+//!
+//! What an included file holds under [`MAPS`] and [`LISTS`] joins what the including file holds; the rest of it
+//! (camera of its own, size, title) is left aside, so that a whole scene can serve as a library. A file that is
+//! named twice comes in once.
+
+use super::guard::Refused;
+use super::source::{FileId, Place, Sources};
+use super::tree::{Member, Node, Value};
+use super::{Unreadable, parse, read_text};
+use crate::report::Finding;
+use std::path::{Path, PathBuf};
+
+/// Named things: one of each name. Variables of included files come first, as later ones may use them.
+const MAPS: [&str; 5] = ["variables", "cameras", "textures", "materials", "groups"];
+/// Things in order: those of included files come first.
+const LISTS: [&str; 2] = ["lights", "objects"];
+/// Most files of one scene.
+const MAX_FILES: usize = 1000;
+/// Longest chain of files that include each other.
+const MAX_CHAIN: usize = 32;
+
+/// Reads a scene's files.
+pub struct Reader {
+    sources: Sources,
+    findings: Vec<Finding>,
+    /// Every file that came in, in its one true name.
+    seen: Vec<PathBuf>,
+    /// The files that are being read, each included by the one before.
+    open: Vec<PathBuf>,
+}
+
+impl Reader {
+    /// For the scene in this file.
+    pub fn new(main: &Path) -> Self {
+        let main = true_name(main);
+        Self { sources: Sources::default(), findings: Vec::new(), seen: vec![main.clone()], open: vec![main] }
+    }
+
+    /// The merged tree of the main file, as far as there is one.
+    pub fn main(&mut self, name: &str, text: String) -> Option<Node> {
+        self.file(name, text)
+    }
+
+    /// What was read, and all that was wrong with it.
+    pub fn finish(self) -> (Sources, Vec<Finding>) {
+        (self.sources, self.findings)
+    }
+
+    fn file(&mut self, name: &str, text: String) -> Option<Node> {
+        let id = self.sources.add(name, text);
+        let text = self.sources.get(id).map(|source| source.text.as_str()).unwrap_or_default();
+        let mut tree = match parse(text, id) {
+            Ok(tree) => tree,
+            Err(refused) => {
+                self.findings.extend(refused.into_iter().map(|refused| finding(id, refused)));
+                return None;
+            }
+        };
+        let Value::Object(members) = &mut tree.value else {
+            let message = format!("a scene is an object `{{...}}`, this is {}", tree.kind());
+            self.findings.push(Finding::error(message).on(tree.place));
+            return None;
+        };
+        let Some(include) = members.shift_remove("include") else { return Some(tree) };
+        for named in self.names(&include.node) {
+            if let Some(other) = self.included(named, id) {
+                self.merge(&mut tree, other);
+            }
+        }
+        Some(tree)
+    }
+
+    /// The strings of `include`: one, or an array of them.
+    fn names(&mut self, include: &Node) -> Vec<(String, Option<Place>)> {
+        let named = match &include.value {
+            Value::Array(elements) => elements.iter().collect(),
+            _ => vec![include],
+        };
+        let mut names = Vec::new();
+        for node in named {
+            match node.as_str() {
+                Some(name) => names.push((name.to_owned(), node.place)),
+                None => {
+                    let message = format!("expected the name of a scene file, found {}", node.kind());
+                    self.findings.push(Finding::error(message).on(node.place));
+                }
+            }
+        }
+        names
+    }
+
+    fn included(&mut self, (name, place): (String, Option<Place>), by: FileId) -> Option<Node> {
+        let folder = self.sources.get(by).map(|source| source.folder.clone()).unwrap_or_default();
+        let path = folder.join(&name);
+        let identity = true_name(&path);
+        let problem = if let Some(at) = self.open.iter().position(|open| *open == identity) {
+            let chain: Vec<_> = self.open.iter().skip(at).chain([&identity]).map(|p| file_name(p)).collect();
+            Some(format!("files include each other in a circle: {}", chain.join(" → ")))
+        } else if self.seen.contains(&identity) {
+            return None;
+        } else if self.open.len() > MAX_CHAIN {
+            Some(format!("more than {MAX_CHAIN} files include one another"))
+        } else if self.seen.len() > MAX_FILES {
+            Some(format!("a scene has at most {MAX_FILES} files"))
+        } else {
+            None
+        };
+        if let Some(message) = problem {
+            self.findings.push(Finding::error(message).on(place));
+            return None;
+        }
+        let text = match read_text(&path) {
+            Ok(text) => text,
+            Err(why) => {
+                let shown = path.display();
+                let message = match why {
+                    Unreadable::Io(error) => format!("cannot read `{shown}`: {}", crate::report::plain_io(&error)),
+                    Unreadable::NotText(message) => format!("cannot include `{shown}`: {message}"),
+                };
+                self.findings.push(Finding::error(message).on(place));
+                return None;
+            }
+        };
+        self.seen.push(identity.clone());
+        self.open.push(identity);
+        let tree = self.file(&path.to_string_lossy(), text);
+        self.open.pop();
+        tree
+    }
+
+    fn merge(&mut self, into: &mut Node, from: Node) {
+        let (Value::Object(into), Value::Object(from)) = (&mut into.value, from.value) else { return };
+        for (key, member) in *from {
+            let known = MAPS.contains(&key.as_str()) || LISTS.contains(&key.as_str());
+            match into.get_mut(&key) {
+                None if known => {
+                    into.insert(key, member);
+                }
+                Some(own) if known => self.join(&key, own, member),
+                _ => {}
+            }
+        }
+    }
+
+    fn join(&mut self, key: &str, own: &mut Member, other: Member) {
+        match (&mut own.node.value, other.node.value) {
+            (Value::Array(own), Value::Array(mut elements)) => {
+                elements.append(own);
+                *own = elements;
+            }
+            (Value::Object(own), Value::Object(other)) => {
+                for (at, (name, member)) in other.into_iter().enumerate() {
+                    if let Some(first) = own.get(&name) {
+                        let elsewhere = self.file_name(first.key_place);
+                        let message = format!("`{name}` in `{key}` has been defined before, in {elsewhere}");
+                        self.findings.push(Finding::error(message).on(member.key_place));
+                    } else if key == "variables" {
+                        own.shift_insert(at.min(own.len()), name, member);
+                    } else {
+                        own.insert(name, member);
+                    }
+                }
+            }
+            // The including file's value has the wrong type: the schema will say so.
+            _ => {}
+        }
+    }
+
+    fn file_name(&self, place: Option<Place>) -> String {
+        let source = place.and_then(|place| self.sources.get(place.file));
+        source.map_or_else(|| "another file".into(), |source| source.name.clone())
+    }
+}
+
+fn finding(file: FileId, refused: Refused) -> Finding {
+    let at = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
+    let place = Place { file, start: at(refused.at.start), end: at(refused.at.end) };
+    let finding = Finding::error(refused.message).on(Some(place));
+    match refused.help {
+        Some(help) => finding.help(help),
+        None => finding,
+    }
+}
+
+/// The name that tells whether two files are one.
+fn true_name(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}

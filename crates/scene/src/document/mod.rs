@@ -1,0 +1,70 @@
+//! Scene files as they are written: text, tree with places, includes merged. Nothing here knows what a scene is.
+
+mod guard;
+mod include;
+mod parse;
+mod source;
+mod tree;
+
+pub use guard::{MAX_BYTES, MAX_DEPTH, MAX_VALUES};
+pub use source::{FileId, Place, Source, Sources};
+pub use tree::{Member, Members, Node, Value};
+
+pub(crate) use parse::parse;
+
+use crate::report::Finding;
+use std::path::Path;
+use std::{fs, io};
+
+/// The files of a scene, merged into one tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// The texts.
+    pub sources: Sources,
+    /// The merged tree, expressions unresolved.
+    pub tree: Node,
+}
+
+impl Document {
+    /// Reads a scene from a text and the files it includes; `name` is what messages call it, and the files it
+    /// names are relative to that name's folder.
+    pub fn read(name: &str, text: String) -> Result<Self, (Sources, Vec<Finding>)> {
+        let mut reader = include::Reader::new(Path::new(name));
+        let tree = reader.main(name, text);
+        let (sources, findings) = reader.finish();
+        match tree {
+            Some(tree) if findings.is_empty() => Ok(Self { sources, tree }),
+            _ => Err((sources, findings)),
+        }
+    }
+}
+
+/// Why a file gives no text.
+#[derive(Debug)]
+pub enum Unreadable {
+    /// The system says no.
+    Io(io::Error),
+    /// It is no text.
+    NotText(String),
+}
+
+/// The text of a file.
+pub fn read_text(path: &Path) -> Result<String, Unreadable> {
+    use io::Read;
+    let metadata = fs::metadata(path).map_err(Unreadable::Io)?;
+    if metadata.is_dir() {
+        return Err(Unreadable::NotText("this is a folder, not a file".into()));
+    }
+    if !metadata.is_file() {
+        return Err(Unreadable::NotText("this is not an ordinary file".into()));
+    }
+    let mut bytes = Vec::new();
+    let file = fs::File::open(path).map_err(Unreadable::Io)?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(Unreadable::Io)?;
+    guard::text(bytes).map_err(Unreadable::NotText)
+}
+
+/// The text of bytes that came from elsewhere.
+pub fn text_of(bytes: Vec<u8>) -> Result<String, String> {
+    guard::text(bytes)
+}

@@ -1,0 +1,96 @@
+//! Places inside a scene: `objects[0].shape.sphere.radius`.
+
+use std::fmt;
+
+/// One step from a value to a value inside it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Step {
+    /// Into an object, by key.
+    Key(String),
+    /// Into an array, by position.
+    Index(usize),
+}
+
+/// The way from the top of a scene to one of its values.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Path(Vec<Step>);
+
+impl Path {
+    /// The top of the scene.
+    pub fn root() -> Self {
+        Self::default()
+    }
+
+    /// One step further, into an object.
+    #[must_use]
+    pub fn key(&self, key: impl Into<String>) -> Self {
+        self.step(Step::Key(key.into()))
+    }
+
+    /// One step further, into an array.
+    #[must_use]
+    pub fn index(&self, index: usize) -> Self {
+        self.step(Step::Index(index))
+    }
+
+    /// Further by a written path such as `vertices[3].x`, which the tracer's own errors name.
+    #[must_use]
+    pub fn join(&self, written: &str) -> Self {
+        let mut path = self.clone();
+        for part in written.split(['.', '[']).map(|part| part.trim_end_matches(']')).filter(|part| !part.is_empty()) {
+            path.0.push(part.parse().map_or_else(|_| Step::Key(part.to_owned()), Step::Index));
+        }
+        path
+    }
+
+    /// The steps in order.
+    pub fn steps(&self) -> &[Step] {
+        &self.0
+    }
+
+    /// Goes one step down, for a walk that comes back up with [`Path::pop`].
+    pub(crate) fn push(&mut self, step: Step) {
+        self.0.push(step);
+    }
+
+    /// Back up one step.
+    pub(crate) fn pop(&mut self) {
+        self.0.pop();
+    }
+
+    fn step(&self, step: Step) -> Self {
+        let mut path = self.clone();
+        path.0.push(step);
+        path
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Index(index) => write!(f, "[{index}]")?,
+                Step::Key(key) if is_plain(key) => write!(f, "{}{key}", if i == 0 { "" } else { "." })?,
+                Step::Key(key) => write!(f, "[{key:?}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a key can stand in a written path without quotes.
+fn is_plain(key: &str) -> bool {
+    !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn is_written_as_people_write_it() {
+        let path = Path::root().key("objects").index(3).key("shape").key("my sphere").join("vertices[7].x");
+        assert_eq!(path.to_string(), "objects[3].shape[\"my sphere\"].vertices[7].x");
+        assert_eq!(Path::root().to_string(), "");
+    }
+}

@@ -1,0 +1,99 @@
+//! Problems as text for people.
+
+use super::{Problem, Problems, Severity};
+use crate::document::{Place, Sources};
+use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+use std::fmt::Write;
+
+/// Most problems that are written out in full.
+const MAX_SHOWN: usize = 50;
+/// Widest excerpt of a line, in bytes on each side of the fault.
+const MARGIN: usize = 100;
+
+/// All problems, with a line that counts them when there are several.
+pub fn render(problems: &Problems, color: bool) -> String {
+    let renderer = if color { Renderer::styled() } else { Renderer::plain() };
+    let mut text = String::new();
+    for problem in problems.list().iter().take(MAX_SHOWN) {
+        let group = group(problem, problems.sources());
+        text.push_str(renderer.render(&[group]).trim_end());
+        text.push_str("\n\n");
+    }
+    let (errors, warnings) = (problems.errors(), problems.warnings());
+    let hidden = problems.list().len().saturating_sub(MAX_SHOWN);
+    if hidden > 0 {
+        let _ = writeln!(text, "... and {hidden} more");
+    }
+    if errors + warnings > 1 {
+        let counts = [(errors, "error"), (warnings, "warning")];
+        let counts: Vec<String> = counts.into_iter().filter(|(n, _)| *n > 0).map(|(n, what)| count(n, what)).collect();
+        let _ = writeln!(text, "{}", counts.join(", "));
+    }
+    text.trim_end().to_owned()
+}
+
+fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+fn group<'p>(problem: &'p Problem, sources: &'p Sources) -> Group<'p> {
+    let level = match problem.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let mut elements: Vec<Element<'p>> = Vec::new();
+    if let Some(excerpt) = problem.place.and_then(|place| Excerpt::of(place, sources)) {
+        elements.push(Origin::path(excerpt.file).line(excerpt.line).char_column(excerpt.column).into());
+        let annotation = AnnotationKind::Primary.span(excerpt.start..excerpt.end);
+        elements.push(Snippet::source(excerpt.text).line_start(excerpt.line).annotation(annotation).into());
+    }
+    if !problem.path.is_empty() {
+        elements.push(Level::NOTE.with_name("at").message(problem.path.as_str()).into());
+    }
+    if let Some(help) = &problem.help {
+        elements.push(Level::HELP.message(help.as_str()).into());
+    }
+    level.primary_title(problem.message.as_str()).elements(elements)
+}
+
+/// The line of a fault, cut to a readable width.
+struct Excerpt<'p> {
+    file: &'p str,
+    /// Counted from 1.
+    line: usize,
+    /// In characters, counted from 1.
+    column: usize,
+    text: String,
+    /// Bytes of `text` at fault.
+    start: usize,
+    end: usize,
+}
+
+impl<'p> Excerpt<'p> {
+    fn of(place: Place, sources: &'p Sources) -> Option<Self> {
+        let source = sources.get(place.file)?;
+        let start = source.text.floor_char_boundary(place.start as usize);
+        let (before, after) = source.text.split_at_checked(start)?;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = before.matches('\n').count() + 1;
+        let left = before.get(line_start..)?;
+        let right = after.lines().next().unwrap_or_default();
+        let column = left.chars().count() + 1;
+        let fault = right.floor_char_boundary(((place.end - place.start) as usize).clamp(0, MARGIN));
+        let shown_left = left.get(left.ceil_char_boundary(left.len().saturating_sub(MARGIN))..)?;
+        let shown_right = right.get(..right.floor_char_boundary((fault + MARGIN).min(right.len())))?;
+        let cut = if shown_left.len() < left.len() { "…" } else { "" };
+        let tail = if shown_right.len() < right.len() { "…" } else { "" };
+        let text = format!("{cut}{shown_left}{shown_right}{tail}");
+        let start = cut.len() + shown_left.len();
+        Some(Self { file: &source.name, line, column, text, start, end: start + fault.min(shown_right.len()) })
+    }
+}
+
+impl Problem {
+    /// Line and column of the fault, both counted from 1, the column in characters.
+    pub fn line_and_column(&self, sources: &Sources) -> Option<(usize, usize)> {
+        let excerpt = Excerpt::of(self.place?, sources)?;
+        Some((excerpt.line, excerpt.column))
+    }
+}
