@@ -1,7 +1,8 @@
 //! One triangle with what its corners carry: position, shading normal, surface coordinates.
 
+use super::arithmetic::double;
 use crate::surface::Surface;
-use juggler_math::{DVec3, Vec2, Vec3, robust};
+use juggler_math::{DVec2, DVec3, Ray, Vec2, Vec3, robust};
 
 /// A triangle of a mesh, or one that stands alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,23 +28,42 @@ impl Facet {
     }
 
     /// The point and the geometric normal at barycentrics of the second and third corner.
-    pub fn point(&self, at: Vec2) -> (Vec3, Vec3) {
+    pub fn point(&self, at: DVec2) -> (Vec3, Vec3) {
         // In f64, weights that sum to one keep the point in the plane whatever their own rounding.
         let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
-        let point = a + (b - a) * f64::from(at.x) + (c - a) * f64::from(at.y);
+        let point = a + (b - a) * at.x + (c - a) * at.y;
         (point.as_vec3(), self.winding().normalize_or(DVec3::Y).as_vec3())
     }
 
-    /// The surface at barycentrics of the second and third corner. Without surface coordinates of its own, it
-    /// gives the barycentrics.
-    pub fn surface(&self, at: Vec2) -> Surface {
+    /// The surface where a ray hits; `near` are barycentrics of the second and third corner, to be refined.
+    /// Without surface coordinates of its own, it gives the barycentrics.
+    pub fn surface(&self, ray: &Ray, near: Vec2) -> Surface {
+        let at = self.refined(ray, near.as_dvec2());
         let (point, normal) = self.point(at);
         let [a, b, c] = self.corners;
         let size = (b - a).abs().max((c - a).abs()).max_element();
-        // The triangle test is in f32, relative to the corners' distance; the point itself is only rounded.
-        let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(12) * size;
+        // The triangle test is in f32, and the more slender the triangle, the more it is off (measured for random
+        // triangles with sides up to 100,000 : 1: at most 1.3 half ulps of size times slenderness).
+        let slender = (f64::from(size * size) / self.winding().length()) as f32;
+        let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(4) * size * slender.max(1.0);
+        let at = at.as_vec2();
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
         Surface { shading_normal: self.shading_normal(normal, at), ..Surface::new(point, error, normal, uv) }
+    }
+
+    /// Barycentrics where the ray meets the plane, in `f64`: those of a slender triangle are not good in `f32`.
+    fn refined(&self, ray: &Ray, near: DVec2) -> DVec2 {
+        let (origin, direction) = double(ray);
+        let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
+        let winding = self.winding();
+        let t = winding.dot(a - origin) / winding.dot(direction);
+        if !t.is_finite() {
+            return near;
+        }
+        let from_a = origin + direction * t - a;
+        let across = DVec2::new(from_a.cross(c - a).dot(winding), (b - a).cross(from_a).dot(winding));
+        let inside = (across / winding.length_squared()).clamp(DVec2::ZERO, DVec2::ONE);
+        inside / (inside.x + inside.y).max(1.0)
     }
 
     /// The interpolated normal, kept on the front: a triangle wound against its normals has them turned round,

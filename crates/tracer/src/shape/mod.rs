@@ -5,6 +5,8 @@ use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
 mod arithmetic;
 mod check;
+#[cfg(test)]
+mod contract;
 mod facet;
 mod solid_angle;
 

@@ -60,19 +60,28 @@ pub fn intersect_sphere(center: Vec3, radius: f32, ray: &Ray) -> Option<Hit> {
     first_in_range(ray, [(near, 0), (far, 1)])
 }
 
-/// The surface at a hit that [`intersect_sphere`] gave for this ray; `local` is relative to the centre.
+/// The surface at a hit that [`intersect_sphere`] gave for this ray; `local` is relative to the centre. Its `uv`
+/// is left out: two arc tangents that most materials never ask for.
+#[inline]
 pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surface {
     let (origin, direction) = double(ray);
     let (center, wide) = (center.as_dvec3(), f64::from(radius));
     let origin = origin - center;
-    // Not from `hit.t`: far away, its rounding is not small against the sphere.
-    let t = cross_sphere(origin, direction, wide)
-        .map_or(f64::from(hit.t), |(near, far)| if hit.part == 0 { near } else { far });
+    // Seen from afar the rounding of `hit.t` is not small against the sphere: solve again, in full precision.
+    let afar = f64::from(hit.t) * direction.abs().max_element() > 64.0 * wide;
+    let t = if afar { root(origin, direction, wide, hit) } else { f64::from(hit.t) };
     let unit = (origin + direction * t).normalize_or(DVec3::Y);
     let (point, normal) = ((center + unit * wide).as_vec3(), unit.as_vec3());
     let local = (unit * wide).as_vec3();
     let error = robust::gamma(2) * point.abs().dot(normal.abs());
-    Surface { local, ..Surface::new(point, error, normal, longitude_latitude(normal)) }
+    Surface { local, ..Surface::new(point, error, normal, Vec2::ZERO) }
+}
+
+/// The distance of a hit before it was rounded.
+#[cold]
+fn root(origin: DVec3, direction: DVec3, radius: f64, hit: &Hit) -> f64 {
+    let crossing = cross_sphere(origin, direction, radius);
+    crossing.map_or(f64::from(hit.t), |(near, far)| if hit.part == 0 { near } else { far })
 }
 
 fn longitude_latitude(n: Vec3) -> Vec2 {
@@ -95,7 +104,8 @@ impl Shape for Sphere {
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        sphere_surface(Vec3::ZERO, self.radius, ray, hit)
+        let surface = sphere_surface(Vec3::ZERO, self.radius, ray, hit);
+        Surface { uv: longitude_latitude(surface.normal), ..surface }
     }
 
     fn area(&self) -> f32 {

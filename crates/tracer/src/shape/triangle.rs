@@ -73,8 +73,8 @@ impl Shape for Triangle {
         Some(Hit { t, uv: Vec2::new(u, v), part: 0 })
     }
 
-    fn surface(&self, _ray: &Ray, hit: &Hit) -> Surface {
-        self.facet().surface(hit.uv)
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.facet().surface(ray, hit.uv)
     }
 
     fn area(&self) -> f32 {
@@ -82,7 +82,7 @@ impl Shape for Triangle {
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
-        let (point, normal) = self.facet().point(warp::uniform_triangle(u).truncate());
+        let (point, normal) = self.facet().point(warp::uniform_triangle(u).truncate().as_dvec2());
         area_sample(from, point, normal, self.area())
     }
 

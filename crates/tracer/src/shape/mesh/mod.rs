@@ -110,7 +110,7 @@ impl Shape for Mesh {
         }
         if self.triangles.is_empty() {
             return Err(match &self.file {
-                Some(file) => check::invalid("file", format!("`{file}` holds no triangles")),
+                Some(file) => check::invalid("file", format!("`file` \"{file}\" holds no triangles")),
                 None => check::invalid("triangles", "a mesh must have `file`, or `positions` and `triangles`"),
             });
         }
@@ -134,7 +134,7 @@ impl Shape for Mesh {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let facet = self.prepared.as_ref().and_then(|p| p.data().facet(hit.part as usize));
-        facet.map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |facet| facet.surface(hit.uv))
+        facet.map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |facet| facet.surface(ray, hit.uv))
     }
 
     fn area(&self) -> f32 {
@@ -144,7 +144,7 @@ impl Shape for Mesh {
     fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample> {
         let prepared = self.prepared.as_ref()?;
         let (index, rest) = pick(prepared.running_areas(), u.x)?;
-        let at = warp::uniform_triangle(Vec2::new(rest, u.y)).truncate();
+        let at = warp::uniform_triangle(Vec2::new(rest, u.y)).truncate().as_dvec2();
         let (point, normal) = prepared.data().facet(index)?.point(at);
         area_sample(from, point, normal, prepared.area())
     }

@@ -64,7 +64,8 @@ impl Shape for Polygon {
         let point = if t.is_finite() { point } else { origin + direction * f64::from(hit.t) };
         let from_first = point - self.vertices.first().map_or(DVec3::ZERO, |v| v.as_dvec3());
         let uv = Vec2::new(from_first.dot(self.outline.along) as f32, from_first.dot(self.outline.across()) as f32);
-        rounded_surface(point, self.outline.normal, uv)
+        let surface = rounded_surface(self.outline.onto_plane(point), self.outline.normal, uv);
+        Surface { error: surface.error + self.outline.rounding, ..surface }
     }
 
     fn area(&self) -> f32 {

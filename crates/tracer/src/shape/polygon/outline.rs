@@ -15,6 +15,8 @@ pub struct Outline {
     pub bounds: Aabb,
     /// Running sums of the areas of the triangles that fan out from the first corner.
     pub areas: Vec<f64>,
+    /// Bound on what the plane's `f64` numbers leave out.
+    pub rounding: f32,
     /// The mean of the corners; the plane goes through it.
     center: DVec3,
     /// For each edge the direction inwards and where the edge lies along it, seen from the centre.
@@ -24,7 +26,15 @@ pub struct Outline {
 impl Default for Outline {
     fn default() -> Self {
         let (edges, areas) = (Vec::new(), Vec::new());
-        Self { normal: DVec3::ZERO, along: DVec3::ZERO, bounds: Aabb::EMPTY, areas, center: DVec3::ZERO, edges }
+        Self {
+            normal: DVec3::ZERO,
+            along: DVec3::ZERO,
+            bounds: Aabb::EMPTY,
+            areas,
+            rounding: 0.0,
+            center: DVec3::ZERO,
+            edges,
+        }
     }
 }
 
@@ -62,6 +72,7 @@ impl Outline {
             along: edges.first().map_or(DVec3::X, |e| (*e - normal * e.dot(normal)).normalize()),
             bounds: if deviation > 0.0 { bounds.grown((deviation as f32).next_up()) } else { bounds },
             areas: fan_areas(&corners),
+            rounding: (8.0 * f64::EPSILON * coordinate) as f32,
             center,
             edges: inwards.collect(),
         })
@@ -151,29 +162,25 @@ fn check_flat(corners: &[DVec3], normal: DVec3, center: DVec3, tolerance: f64) -
 /// be from where it was meant to be.
 fn check_convex(edges: &[DVec3], normal: DVec3, rounding: f64) -> Result<(), InvalidShape> {
     let before = edges.iter().cycle().skip(edges.len().saturating_sub(1));
-    let mut turned = 0.0;
-    for (i, (edge, before)) in edges.iter().zip(before).enumerate() {
-        let turn = fun::atan2_f64(normal.dot(before.cross(*edge)), before.dot(*edge)).to_degrees();
-        turned += turn;
-        let at = format!("vertices[{i}]");
-        let slack = 1e-3 + (rounding / edge.length() + rounding / before.length()).to_degrees();
-        if turn < -slack {
-            let message = format!(
-                "`vertices` must be convex and in order: the outline turns inwards by {:.3} degrees at `{at}`",
-                -turn
-            );
-            return Err(invalid(at, message));
-        }
-        if turn > 180.0 - slack {
-            return Err(invalid(
-                &at,
-                format!("`vertices` must be in order: the outline turns back on itself at `{at}`"),
-            ));
-        }
-        if turned > 361.0 {
-            let message = format!("`vertices` must be in order: the outline begins its second round at `{at}`");
-            return Err(invalid(at, message));
-        }
+    let angle =
+        |before: DVec3, edge: DVec3| fun::atan2_f64(normal.dot(before.cross(edge)), before.dot(edge)).to_degrees();
+    let turns: Vec<f64> = before.zip(edges).map(|(before, edge)| angle(*before, *edge)).collect();
+    let least = edges.iter().map(|edge| edge.length()).fold(f64::INFINITY, f64::min);
+    let slack = 1e-3 + (2.0 * rounding / least).to_degrees();
+    if let Some(i) = turns.iter().position(|turn| *turn < -slack || *turn > 180.0 - slack) {
+        let message = format!(
+            "`vertices` must be convex and in order: the outline turns back at `vertices[{i}]`, by {:.3} degrees",
+            turns[i].abs()
+        );
+        return Err(invalid(format!("vertices[{i}]"), message));
+    }
+    let running = turns.iter().scan(0.0, |sum, turn| {
+        *sum += turn;
+        Some(*sum)
+    });
+    if let Some((i, _)) = running.enumerate().find(|(_, turned)| *turned > 361.0) {
+        let message = format!("`vertices` must be in order: the outline begins its second round at `vertices[{i}]`");
+        return Err(invalid(format!("vertices[{i}]"), message));
     }
     Ok(())
 }
