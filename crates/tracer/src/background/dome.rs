@@ -47,8 +47,8 @@ impl Background for Dome {
         let along = origin.dot(ray.direction);
         let discriminant = (along * along + 1.0 - origin.length_squared()).max(0.0);
         let height = origin.y + ray.direction.y * (discriminant.sqrt() - along);
-        // A plain maximum takes NaN, from origins without measure, to 0.
-        self.bottom.lerp(self.top, height.max(0.0).min(1.0))
+        // Written so that NaN, from origins without measure, is 0.
+        self.bottom.lerp(self.top, if height > 0.0 { height.min(1.0) } else { 0.0 })
     }
 }
 

@@ -39,6 +39,10 @@ impl Light for Ambient {
         self.color * self.intensity
     }
 
+    fn is_point(&self) -> bool {
+        true
+    }
+
     fn power(&self, _world_radius: f32) -> f32 {
         0.0
     }

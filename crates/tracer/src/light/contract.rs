@@ -151,7 +151,7 @@ fn says_what_is_wrong() {
         (r#"{"point": {"intensity": -1}}"#, "intensity"),
         (r#"{"point": {"intensity": 1e38, "color": [1e38, 0, 0]}}"#, "intensity"),
         (r#"{"point": {"samples": 0}}"#, "samples"),
-        (r#"{"point": {"attenuation": {"quadratic": 0}}}"#, "attenuation"),
+        (r#"{"point": {"attenuation": {}}}"#, "attenuation"),
         (r#"{"point": {"attenuation": {"linear": -1}}}"#, "attenuation.linear"),
         (r#"{"point": {"extent": {"sphere": {"radius": -1}}}}"#, "extent.sphere.radius"),
         (r#"{"spot": {"extent": {"square": {"side": 1e39}}}}"#, "extent.square.side"),

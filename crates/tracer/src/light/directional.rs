@@ -46,6 +46,10 @@ impl Light for Directional {
         })
     }
 
+    fn is_point(&self) -> bool {
+        true
+    }
+
     fn power(&self, world_radius: f32) -> f32 {
         std::f32::consts::PI * world_radius * world_radius * (self.color * self.intensity).luminance()
     }

@@ -47,6 +47,8 @@ pub trait Light: Send + Sync {
     fn shadow_samples(&self) -> u32 {
         1
     }
+    /// Whether it shines from a single place or direction, so that [`Light::sample`] asks nothing of `u`.
+    fn is_point(&self) -> bool;
     /// Light that is everywhere, from nowhere.
     fn ambient(&self) -> Rgb {
         Rgb::BLACK

@@ -2,7 +2,7 @@
 //!
 //! ```json
 //! {"point": {"position": [-564, 686, 147], "color": [1, 1, 1], "intensity": 1,
-//!     "attenuation": {"constant": 1, "quadratic": 0}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
+//!     "attenuation": {"constant": 1}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
 //! ```
 
 use super::source::{self, Attenuation, Extent};
@@ -63,6 +63,10 @@ impl Light for Point {
         if self.extent.is_some() { self.samples } else { 1 }
     }
 
+    fn is_point(&self) -> bool {
+        self.extent.is_none()
+    }
+
     fn power(&self, world_radius: f32) -> f32 {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
         4.0 * std::f32::consts::PI * at_radius * (self.color * self.intensity).luminance()
@@ -86,7 +90,6 @@ impl Point {
             color: Rgb::new(1.0, 0.5, 0.25),
             intensity: 3.0,
             samples: 16,
-            ..Self::default()
         };
         vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess]
     }
@@ -99,10 +102,10 @@ mod tests {
     #[test]
     fn falls_off_as_stated() {
         for (attenuation, expected) in [
-            (r#"{}"#, [1.0, 0.25, 1e-4]),
-            (r#"{"constant": 1, "quadratic": 0}"#, [1.0, 1.0, 1.0]),
+            (r#"{"quadratic": 1}"#, [1.0, 0.25, 1e-4]),
+            (r#"{"constant": 1}"#, [1.0, 1.0, 1.0]),
             (r#"{"constant": 1, "linear": 0.5, "quadratic": 0.25}"#, [4.0 / 7.0, 1.0 / 3.0, 1.0 / 2551.0]),
-            (r#"{"linear": 2, "quadratic": 0}"#, [0.5, 0.25, 0.005]),
+            (r#"{"linear": 2}"#, [0.5, 0.25, 0.005]),
         ] {
             let json = format!(r#"{{"position": [1, 2, 3], "intensity": 8, "attenuation": {attenuation}}}"#);
             let light: Point = serde_json::from_str(&json).unwrap();

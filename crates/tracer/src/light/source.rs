@@ -7,16 +7,20 @@ use serde::{Deserialize, Serialize};
 
 /// How light falls off with the distance d from the light's centre: by the factor
 /// 1 / (constant + linear · d + quadratic · d²). The default is the inverse square of nature.
+///
+/// A coefficient that is not written is 0: `{"constant": 1}` is light that never falls off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default)]
 pub struct Attenuation {
-    /// Does not depend on the distance: 1 with the others 0 is light that never falls off.
+    /// Does not depend on the distance.
+    #[serde(default)]
     #[schemars(range(min = 0))]
     pub constant: f32,
     /// Grows with the distance.
+    #[serde(default)]
     #[schemars(range(min = 0))]
     pub linear: f32,
     /// Grows with its square.
+    #[serde(default)]
     #[schemars(range(min = 0))]
     pub quadratic: f32,
 }

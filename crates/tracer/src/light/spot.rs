@@ -105,6 +105,10 @@ impl Light for Spot {
         if self.extent.is_some() { self.samples } else { 1 }
     }
 
+    fn is_point(&self) -> bool {
+        self.extent.is_none()
+    }
+
     fn power(&self, world_radius: f32) -> f32 {
         const STEPS: u16 = 512;
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;

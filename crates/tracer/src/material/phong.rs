@@ -262,6 +262,11 @@ impl CompiledPhong {
         }
     }
 
+    /// Whether it differs from place to place.
+    pub fn is_textured(&self) -> bool {
+        self.textured.is_some()
+    }
+
     /// Whether light gets through anywhere.
     pub fn is_transparent(&self) -> bool {
         let by_texture = self.textured.as_ref().is_some_and(|slots| slots.transparency.is_texture());

@@ -56,6 +56,11 @@ impl MaterialTable {
         self.transparent.get(id.0 as usize).copied().unwrap_or(false)
     }
 
+    /// Whether material `id` differs from place to place.
+    pub fn is_textured(&self, id: MaterialId) -> bool {
+        !matches!(self.materials.get(id.0 as usize), Some(Compiled::Phong(phong)) if !phong.is_textured())
+    }
+
     /// The material that stands at this point once all checkerboards have chosen. Every choice is an
     /// earlier material, so this ends.
     #[inline]

@@ -1,0 +1,48 @@
+//! The JSON in a kind's documentation is what a reader will copy: it must be that kind, whole and right.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
+
+use juggler_tracer::background::AnyBackground;
+use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::material::{AnyMaterial, MaterialCompiler};
+use juggler_tracer::texture::{AnyTexture, TextureTable};
+use serde::de::DeserializeOwned;
+use std::fs;
+use std::path::Path;
+
+/// The JSON blocks of each file of a family but its page of contents, with the file's name.
+fn snippets(family: &str) -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(family);
+    let mut found = Vec::new();
+    for file in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        let name = file.file_stem().unwrap().to_str().unwrap().to_owned();
+        let page: String =
+            fs::read_to_string(&file).unwrap().lines().filter_map(|line| line.strip_prefix("//! ")).collect();
+        let blocks = page.split("```json").skip(1).filter_map(|rest| rest.split("```").next());
+        found.extend(blocks.filter(|_| name != "mod").map(|block| (name.clone(), block.to_owned())));
+    }
+    found
+}
+
+fn each<T: DeserializeOwned>(family: &str, least: usize, check: impl Fn(&T) -> Result<(), String>) {
+    let found = snippets(family);
+    assert!(found.len() >= least, "{family} documents {} kinds", found.len());
+    for (file, text) in found {
+        assert!(text.contains(&format!("\"{file}\"")), "{family}/{file}.rs shows another kind: {text}");
+        let kind: T = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{family}/{file}.rs: {error}\n{text}"));
+        check(&kind).unwrap_or_else(|error| panic!("{family}/{file}.rs: {error}\n{text}"));
+    }
+}
+
+#[test]
+fn documented_kinds_are_right() {
+    let text = |error: &dyn std::error::Error| error.to_string();
+    each("camera", 3, |camera: &AnyCamera| camera.project([4, 3].into()).map(|_| ()).map_err(|e| text(&e)));
+    each("texture", 2, |texture: &AnyTexture| texture.check().map_err(|e| text(&e)));
+    each("light", 4, |light: &AnyLight| light.check().map_err(|e| text(&e)));
+    each("background", 3, |background: &AnyBackground| background.check().map_err(|e| text(&e)));
+    each("material", 2, |material: &AnyMaterial| {
+        MaterialCompiler::new(TextureTable::default(), []).compile(material).map(|_| ()).map_err(|e| text(&e))
+    });
+}
