@@ -1,1 +1,28 @@
-//! imaging
+//! Files of pixels and tone curves.
+//!
+//! Pictures are written as a stream of rows of linear light, so that a picture of 20,000 × 20,000 pixels
+//! needs a few rows of memory (formats that need more say how much: [`Format::memory_needed`]). Reading gives a
+//! whole [`juggler_math::Image`], for comparisons and textures.
+//!
+//! - [`tone`]: from linear light to levels of 8 or 16 bits;
+//! - [`codec`]: one file per format, writer and reader;
+//! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
+//! - [`input`]: from a file to an image;
+//! - [`compare`]: how much two images differ.
+
+pub mod atomic;
+pub mod codec;
+pub mod compare;
+mod error;
+pub mod format;
+pub mod input;
+pub mod output;
+pub mod tone;
+
+pub use codec::{Header, Options, RowWriter, SampleDepth, writer};
+pub use compare::{Difference, compare};
+pub use error::ImageError;
+pub use format::Format;
+pub use input::{Limits, decode, read, read_metadata, read_within};
+pub use output::{Destination, create, to_standard_output, write_image};
+pub use tone::{AnyCurve, Tone};

@@ -121,17 +121,26 @@ impl Div<f32> for Rgb {
     }
 }
 
-/// Linear value → sRGB-encoded value, both 0..1 (IEC 61966-2-1); values outside are clamped. In double
-/// precision, since 1.055 - 0.055 is not 1 in single.
+/// Linear value → sRGB-encoded value, both 0..1 (IEC 61966-2-1); values outside are clamped.
 pub fn srgb_encode(linear: f32) -> f32 {
-    let v = f64::from(linear.clamp(0.0, 1.0));
-    (if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * fun::pow_f64(v, 1.0 / 2.4) - 0.055 }) as f32
+    srgb_encode_f64(f64::from(linear)) as f32
 }
 
 /// sRGB-encoded value → linear value, both 0..1; values outside are clamped.
 pub fn srgb_decode(encoded: f32) -> f32 {
-    let v = f64::from(encoded.clamp(0.0, 1.0));
-    (if v <= 0.040_45 { v / 12.92 } else { fun::pow_f64((v + 0.055) / 1.055, 2.4) }) as f32
+    srgb_decode_f64(f64::from(encoded)) as f32
+}
+
+/// [`srgb_encode`] in double precision.
+pub fn srgb_encode_f64(linear: f64) -> f64 {
+    let v = linear.clamp(0.0, 1.0);
+    if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * fun::pow_f64(v, 1.0 / 2.4) - 0.055 }
+}
+
+/// [`srgb_decode`] in double precision.
+pub fn srgb_decode_f64(encoded: f64) -> f64 {
+    let v = encoded.clamp(0.0, 1.0);
+    if v <= 0.040_45 { v / 12.92 } else { fun::pow_f64((v + 0.055) / 1.055, 2.4) }
 }
 
 impl Rgb {

@@ -1,0 +1,223 @@
+//! OpenEXR: one part of scanlines in blocks of 16, packed by ZIP, channels B, G, R as floats or halves; values
+//! are scene-referred and no tone curve applies. The header is written here, in a fixed order, since the bytes of
+//! equal pictures must be equal; blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
+
+use super::{Header, ReadSeek, RowWriter, SampleDepth, Source};
+use crate::output::{Destination, WriteSeek};
+use crate::{Format, ImageError};
+use exr::block::{BlockIndex, UncompressedBlock};
+use exr::error::Error as ExrError;
+use exr::math::Vec2;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
+use exr::meta::header::Header as ExrHeader;
+use exr::prelude::{Compression, ReadChannels, ReadLayers, f16};
+use juggler_math::{Image, Rgb};
+use std::io::{self, BufRead, Read, SeekFrom};
+
+/// Rows in a block of ZIP.
+const BLOCK_ROWS: usize = 16;
+/// The version, and the flag for names of more than 31 bytes.
+const VERSION: u32 = 2;
+const LONG_NAMES: u32 = 0x400;
+
+/// Streams blocks of rows into an EXR.
+pub(super) struct Writer {
+    bytes: Box<dyn WriteSeek>,
+    place: String,
+    headers: [ExrHeader; 1],
+    depth: SampleDepth,
+    width: usize,
+    height: usize,
+    /// Rows of a block that is not full yet.
+    pending: Vec<Rgb>,
+    /// Where the table of offsets stands, and the file's end so far.
+    table: u64,
+    end: u64,
+    offsets: Vec<u64>,
+}
+
+impl Writer {
+    pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
+        let place = destination.name().to_owned();
+        let mut bytes = destination.into_seekable();
+        let start = header_bytes(header);
+        let (width, height) = (header.width as usize, header.height as usize);
+        let offsets = Vec::with_capacity(height.div_ceil(BLOCK_ROWS));
+        let table = start.len() as u64;
+        let end = table + 8 * height.div_ceil(BLOCK_ROWS) as u64;
+        let written = bytes.write_all(&start).and_then(|()| bytes.seek(SeekFrom::Start(end)));
+        if let Err(source) = written {
+            return Err(ImageError::Write { place, source });
+        }
+        let (depth, headers) = (header.options.exr_depth, [description(header)]);
+        Ok(Self { bytes, place, headers, depth, width, height, pending: Vec::new(), table, end, offsets })
+    }
+
+    fn write_block(&mut self) -> Result<(), ImageError> {
+        let y = self.offsets.len() * BLOCK_ROWS;
+        let rows = self.pending.len() / self.width;
+        let index =
+            BlockIndex { layer: 0, pixel_position: Vec2(0, y), pixel_size: Vec2(self.width, rows), level: Vec2(0, 0) };
+        let data = planes(&self.pending, self.width, self.depth);
+        self.pending.clear();
+        let mut chunk = Vec::new();
+        let packed = UncompressedBlock { index, data }.compress_to_chunk(&self.headers);
+        let packed = packed.and_then(|packed| packed.write(&mut chunk, 1));
+        packed.map_err(|e| self.refused(&e))?;
+        self.offsets.push(self.end);
+        self.end += chunk.len() as u64;
+        self.bytes.write_all(&chunk).map_err(|e| self.failed(e))
+    }
+
+    fn failed(&self, source: io::Error) -> ImageError {
+        ImageError::Write { place: self.place.clone(), source }
+    }
+
+    fn refused(&self, error: &ExrError) -> ImageError {
+        ImageError::Encode { place: self.place.clone(), format: Format::Exr, message: error.to_string() }
+    }
+}
+
+impl RowWriter for Writer {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        for row in rows.chunks_exact(self.width) {
+            self.pending.extend(row);
+            let done = self.offsets.len() * BLOCK_ROWS + self.pending.len() / self.width;
+            if self.pending.len() == self.width * BLOCK_ROWS || done == self.height {
+                self.write_block()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
+        let table: Vec<u8> = self.offsets.iter().flat_map(|o| o.to_le_bytes()).collect();
+        let written = self.bytes.seek(SeekFrom::Start(self.table)).and_then(|_| self.bytes.write_all(&table));
+        written.and_then(|()| self.bytes.flush()).map_err(|e| self.failed(e))
+    }
+}
+
+/// A block's samples: row by row, in each all of B, then G, then R.
+fn planes(rows: &[Rgb], width: usize, depth: SampleDepth) -> Vec<u8> {
+    let mut data = Vec::with_capacity(rows.len() * 12);
+    for row in rows.chunks_exact(width) {
+        for channel in [2, 1, 0] {
+            let samples = row.iter().map(|p| p.to_array()[channel]);
+            match depth {
+                SampleDepth::Float => data.extend(samples.flat_map(f32::to_ne_bytes)),
+                SampleDepth::Half => data.extend(samples.flat_map(|v| f16::from_f32(v).to_ne_bytes())),
+            }
+        }
+    }
+    data
+}
+
+/// What the packer needs to know.
+fn description(header: &Header) -> ExrHeader {
+    let sample_type = match header.options.exr_depth {
+        SampleDepth::Float => SampleType::F32,
+        SampleDepth::Half => SampleType::F16,
+    };
+    let channels = ["B", "G", "R"].map(|name| ChannelDescription::new(name, sample_type, false));
+    let size = (header.width as usize, header.height as usize);
+    let plain = ExrHeader::new("".into(), size, channels.into_iter().collect());
+    plain.with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+}
+
+/// Magic, version and attributes, ours after the required ones.
+fn header_bytes(header: &Header) -> Vec<u8> {
+    let long = header.metadata.iter().any(|(key, _)| key.len() > 31);
+    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01];
+    bytes.extend((VERSION | if long { LONG_NAMES } else { 0 }).to_le_bytes());
+    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
+        bytes.extend(name.bytes().filter(|&b| b != 0).take(255).chain([0]));
+        bytes.extend(kind.bytes().chain([0]));
+        bytes.extend((value.len() as u32).to_le_bytes());
+        bytes.extend(value);
+    };
+    let pixel_type = if header.options.exr_depth == SampleDepth::Half { 1u32 } else { 2 };
+    let mut channels = Vec::new();
+    for name in [b'B', b'G', b'R'] {
+        channels.extend([name, 0]);
+        channels.extend([pixel_type, 0, 1, 1].into_iter().flat_map(u32::to_le_bytes));
+    }
+    channels.push(0);
+    let window: Vec<u8> = [0, 0, header.width - 1, header.height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
+    attribute("channels", "chlist", &channels);
+    attribute("compression", "compression", &[3]);
+    attribute("dataWindow", "box2i", &window);
+    attribute("displayWindow", "box2i", &window);
+    attribute("lineOrder", "lineOrder", &[0]);
+    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
+    attribute("screenWindowCenter", "v2f", &[0; 8]);
+    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+    for (key, text) in header.metadata.iter().filter(|(key, _)| !key.is_empty()) {
+        attribute(key, "string", text.as_bytes());
+    }
+    bytes.push(0);
+    bytes
+}
+
+/// The first layer with R, G and B of an EXR, in its data window.
+pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let unreadable = |error: ExrError| match error {
+        ExrError::Io(error) => source.failed(error),
+        other => source.malformed(other.to_string()),
+    };
+    let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(unreadable)?;
+    for header in &meta.headers {
+        source.size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
+    }
+    bytes.rewind().map_err(|e| source.failed(e))?;
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
+    let reader = reader.rgb_channels(
+        |size, _| (size.0, vec![[0f32; 3]; size.0 * size.1]),
+        |(width, pixels), position, (r, g, b): (f32, f32, f32)| pixels[position.1 * *width + position.0] = [r, g, b],
+    );
+    let reader = reader.first_valid_layer().all_attributes().non_parallel();
+    let image = reader.from_buffered(&mut *bytes).map_err(unreadable)?;
+    let size = image.layer_data.size;
+    let pixels = image.layer_data.channel_data.pixels.1.into_iter().map(Rgb::from).collect();
+    let (width, height) = source.size(size.0 as u64, size.1 as u64)?;
+    source.image(width, height, pixels)
+}
+
+/// Attributes that are texts, in the file's order.
+pub(super) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
+    text_attributes(bytes).map_err(|e| source.failed(e))
+}
+
+fn text_attributes(bytes: &mut dyn ReadSeek) -> io::Result<Vec<(String, String)>> {
+    let mut texts = Vec::new();
+    let mut eight = [0; 8];
+    bytes.read_exact(&mut eight)?;
+    for _ in 0..10_000 {
+        let name = name(bytes)?;
+        if name.is_empty() {
+            return Ok(texts);
+        }
+        let kind = self::name(bytes)?;
+        let mut size = [0; 4];
+        bytes.read_exact(&mut size)?;
+        let size = u64::from(u32::from_le_bytes(size));
+        let mut value = Vec::new();
+        if (&mut *bytes).take(size).read_to_end(&mut value)? as u64 != size {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        if kind == "string" {
+            texts.push((name, String::from_utf8_lossy(&value).into_owned()));
+        }
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidData, "it has too many attributes"))
+}
+
+/// A name of at most 255 bytes and the zero after it.
+fn name(bytes: &mut dyn ReadSeek) -> io::Result<String> {
+    let mut name = Vec::new();
+    (&mut *bytes).take(256).read_until(0, &mut name)?;
+    match name.pop() {
+        Some(0) => Ok(String::from_utf8_lossy(&name).into_owned()),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidData, "a name has no end")),
+    }
+}

@@ -1,0 +1,218 @@
+//! Radiance pictures (Ward, Real Pixels, Graphics Gems II, 1991): three mantissas of 8 bits with a shared
+//! exponent, rows packed by runs. Mantissas are rounded, not cut off, and read back without half a step added,
+//! as most programs do: the relative error is at most 1/256 of the largest channel.
+
+use super::{Header, ReadSeek, RowWriter, Source};
+use crate::ImageError;
+use crate::output::Destination;
+use juggler_math::{Image, Rgb};
+use std::io::{self, BufRead, Read, Write};
+
+/// Widths that the packed form can hold.
+const PACKED: std::ops::Range<usize> = 8..32_768;
+
+/// Streams rows into a Radiance picture.
+pub(super) struct Writer {
+    bytes: Box<dyn Write + Send>,
+    place: String,
+    width: usize,
+    row: Vec<u8>,
+}
+
+impl Writer {
+    pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
+        let place = destination.name().to_owned();
+        let mut text = String::from("#?RADIANCE\n");
+        for (key, value) in &header.metadata {
+            let one_line = |s: &str| s.replace(['\n', '\r'], " ");
+            text += &format!("{}={}\n", one_line(key).replace('=', " "), one_line(value));
+        }
+        text += &format!("FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", header.height, header.width);
+        let mut bytes = destination.into_stream();
+        if let Err(source) = bytes.write_all(text.as_bytes()) {
+            return Err(ImageError::Write { place, source });
+        }
+        Ok(Self { bytes, place, width: header.width as usize, row: Vec::new() })
+    }
+}
+
+impl RowWriter for Writer {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        for row in rows.chunks_exact(self.width) {
+            self.row.clear();
+            pack_row(row, &mut self.row);
+            let written = self.bytes.write_all(&self.row);
+            written.map_err(|source| ImageError::Write { place: self.place.clone(), source })?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
+        self.bytes.flush().map_err(|source| ImageError::Write { place: self.place, source })
+    }
+}
+
+fn pack_row(row: &[Rgb], bytes: &mut Vec<u8>) {
+    if !PACKED.contains(&row.len()) {
+        bytes.extend(row.iter().flat_map(|&p| to_rgbe(p)));
+        return;
+    }
+    bytes.extend([2, 2, (row.len() >> 8) as u8, row.len() as u8]);
+    let pixels: Vec<[u8; 4]> = row.iter().map(|&p| to_rgbe(p)).collect();
+    for channel in 0..4 {
+        let plane: Vec<u8> = pixels.iter().map(|p| p[channel]).collect();
+        pack_plane(&plane, bytes);
+    }
+}
+
+/// Runs of 4 and more as (128 + length, byte), all else as (length, bytes).
+fn pack_plane(plane: &[u8], bytes: &mut Vec<u8>) {
+    let mut rest = plane;
+    while !rest.is_empty() {
+        let start = rest.windows(4).position(|w| w.iter().all(|&b| b == w[0])).unwrap_or(rest.len());
+        let (literal, run) = rest.split_at(start);
+        for part in literal.chunks(128) {
+            bytes.push(part.len() as u8);
+            bytes.extend(part);
+        }
+        let length = run.iter().take(127).take_while(|&&b| b == run[0]).count();
+        if length > 0 {
+            bytes.extend([128 + length as u8, run[0]]);
+        }
+        rest = &run[length..];
+    }
+}
+
+/// Negative and NaN channels count as 0; the largest value is just below 2^127.
+fn to_rgbe(color: Rgb) -> [u8; 4] {
+    let color = color.map(|v| if v > 0.0 { v.min(1.7e38) } else { 0.0 });
+    let largest = color.max_channel();
+    if largest < 1e-32 {
+        return [0; 4];
+    }
+    // largest = mantissa · 2^exponent, mantissa in [1/2, 1).
+    let mut exponent = (largest.to_bits() >> 23) as i32 - 126;
+    if (largest * power_of_two(8 - exponent)).round() > 255.0 {
+        exponent += 1;
+    }
+    let scale = power_of_two(8 - exponent);
+    let [r, g, b] = color.map(|v| (v * scale).round()).to_array();
+    [r as u8, g as u8, b as u8, (exponent + 128) as u8]
+}
+
+fn from_rgbe([r, g, b, e]: [u8; 4]) -> Rgb {
+    if e == 0 {
+        return Rgb::BLACK;
+    }
+    let (high, low) =
+        (power_of_two((i32::from(e) - 136).max(-126)), power_of_two((i32::from(e) - 136).min(-126) + 126));
+    Rgb::new(f32::from(r), f32::from(g), f32::from(b)) * high * low
+}
+
+/// 2^n for -126 <= n <= 127.
+fn power_of_two(n: i32) -> f32 {
+    f32::from_bits(((n + 127) as u32) << 23)
+}
+
+/// A Radiance picture in RGB, rows from the top; packed or flat.
+pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let lines = head(source, bytes)?;
+    if let Some(format) = lines.iter().find_map(|l| l.strip_prefix("FORMAT=")).filter(|f| *f != "32-bit_rle_rgbe") {
+        return Err(source.malformed(format!("pixels are `{format}`, only 32-bit_rle_rgbe is read")));
+    }
+    let exposures = lines.iter().filter_map(|l| l.strip_prefix("EXPOSURE=")).filter_map(|v| v.trim().parse().ok());
+    let exposure: f32 = exposures.filter(|&v: &f32| v > 0.0 && v.is_finite()).product();
+    let last = lines.last().map(String::as_str).unwrap_or_default();
+    let words: Vec<&str> = last.split_ascii_whitespace().collect();
+    let (width, height) = match words.as_slice() {
+        ["-Y", height, "+X", width] => (width.parse(), height.parse()),
+        _ => return Err(source.malformed(format!("its size says `{last}`, only `-Y height +X width` is read"))),
+    };
+    let (Ok(width), Ok(height)) = (width, height) else {
+        return Err(source.malformed(format!("its size says `{last}`")));
+    };
+    let (width, height) = source.size(width, height)?;
+    let mut pixels = Vec::new();
+    let mut planes = Vec::new();
+    for _ in 0..height {
+        read_row(source, bytes, width as usize, &mut planes)?;
+        pixels.extend(planes.chunks_exact(4).map(|p| from_rgbe([p[0], p[1], p[2], p[3]]) / exposure));
+    }
+    source.image(width, height, pixels)
+}
+
+/// The lines up to and with the size; the empty one is left out.
+fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<String>, ImageError> {
+    let mut lines: Vec<String> = Vec::new();
+    let mut ended = false;
+    while lines.len() < 1000 {
+        let mut line = Vec::new();
+        bytes.take(100_000).read_until(b'\n', &mut line).map_err(|e| source.failed(e))?;
+        if line.pop() != Some(b'\n') {
+            return Err(source.malformed("its head has no end"));
+        }
+        let line = String::from_utf8_lossy(&line).into_owned();
+        match (line.is_empty(), ended) {
+            (true, _) => ended = true,
+            (false, true) => {
+                lines.push(line);
+                return Ok(lines);
+            }
+            (false, false) => lines.push(line),
+        }
+    }
+    Err(source.malformed("its head has no end"))
+}
+
+/// One row as r, g, b, e for each pixel.
+fn read_row(source: Source, bytes: &mut dyn ReadSeek, width: usize, row: &mut Vec<u8>) -> Result<(), ImageError> {
+    let mut start = [0; 4];
+    bytes.read_exact(&mut start).map_err(|e| source.failed(e))?;
+    row.clear();
+    let packed = PACKED.contains(&width) && start[..2] == [2, 2] && start[2] < 128;
+    if !packed {
+        row.extend(start);
+        let wanted = (width - 1) * 4;
+        let got = (&mut *bytes).take(wanted as u64).read_to_end(row).map_err(|e| source.failed(e))?;
+        return if got == wanted { Ok(()) } else { Err(source.malformed("it ends too early")) };
+    }
+    if usize::from(start[2]) << 8 | usize::from(start[3]) != width {
+        return Err(source.malformed("a row has another width"));
+    }
+    row.resize(width * 4, 0);
+    for channel in 0..4 {
+        let mut targets = row.iter_mut().skip(channel).step_by(4);
+        if let Err(error) = unpack_plane(bytes, width, |byte| targets.next().map(|t| *t = byte)) {
+            return Err(source.failed(error));
+        }
+    }
+    Ok(())
+}
+
+fn unpack_plane(bytes: &mut dyn BufRead, width: usize, mut put: impl FnMut(u8) -> Option<()>) -> io::Result<()> {
+    let mut left = width;
+    let mut buffer = [0; 128];
+    while left > 0 {
+        let mut code = [0];
+        bytes.read_exact(&mut code)?;
+        let run = code[0] > 128;
+        let count = usize::from(if run { code[0] - 128 } else { code[0] });
+        if count == 0 || count > left {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "a run is longer than its row"));
+        }
+        let read = if run { 1 } else { count };
+        bytes.read_exact(&mut buffer[..read])?;
+        for i in 0..count {
+            put(buffer[if run { 0 } else { i }]);
+        }
+        left -= count;
+    }
+    Ok(())
+}
+
+/// The `key=value` lines, but those of the format itself.
+pub(super) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
+    let pairs =
+        head(source, bytes)?.into_iter().filter_map(|l| l.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned())));
+    Ok(pairs.filter(|(key, _)| key != "FORMAT" && key != "EXPOSURE").collect())
+}

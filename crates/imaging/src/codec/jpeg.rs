@@ -1,0 +1,85 @@
+//! JPEG (ITU-T T.81), 8 bits, without chroma subsampling above quality 90. The encoder pulls rows, so the picture
+//! in 8 bits is held until the end.
+
+use super::{Header, ReadSeek, RowWriter, Source};
+use crate::output::Destination;
+use crate::tone::Quantizer;
+use crate::{Format, ImageError};
+use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
+use juggler_math::{Image, Rgb};
+use std::io::{Cursor, Read, Write};
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
+
+/// Gathers rows and encodes them at the end.
+pub(super) struct Writer {
+    destination: Destination,
+    quantizer: Quantizer,
+    size: (u32, u32),
+    quality: u8,
+    bytes: Vec<u8>,
+}
+
+impl Writer {
+    pub fn new(destination: Destination, header: &Header) -> Self {
+        Self {
+            destination,
+            quantizer: Quantizer::new(&header.tone, 255),
+            size: (header.width, header.height),
+            quality: header.options.jpeg_quality.clamp(1, 100),
+            bytes: Vec::with_capacity(header.pixels() as usize * 3),
+        }
+    }
+}
+
+impl RowWriter for Writer {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        self.quantizer.append_bytes(rows, &mut self.bytes);
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ImageError> {
+        let place = self.destination.name().to_owned();
+        let mut bytes = self.destination.into_stream();
+        let mut encoder = Encoder::new(&mut bytes, self.quality);
+        encoder.set_sampling_factor(if self.quality > 90 { SamplingFactor::F_1_1 } else { SamplingFactor::F_2_2 });
+        // Sides were checked to fit.
+        let (width, height) = (self.size.0 as u16, self.size.1 as u16);
+        let encoded = encoder.encode(&self.bytes, width, height, ColorType::Rgb);
+        let encoded = encoded.and_then(|()| bytes.flush().map_err(EncodingError::IoError));
+        encoded.map_err(|error| match error {
+            EncodingError::IoError(source) => ImageError::Write { place, source },
+            other => ImageError::Encode { place, format: Format::Jpeg, message: other.to_string() },
+        })
+    }
+}
+
+/// Any baseline or progressive JPEG, taken as sRGB.
+pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let side = Format::Jpeg.longest_side() as usize;
+    let options = DecoderOptions::new_safe()
+        .set_max_width(side)
+        .set_max_height(side)
+        .set_strict_mode(true)
+        .jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut file = Vec::new();
+    let most_bytes = source.limits.most_pixels.saturating_mul(4).saturating_add(1 << 24);
+    bytes.take(most_bytes).read_to_end(&mut file).map_err(|e| source.failed(e))?;
+    if !is_complete(&file) {
+        return Err(source.malformed("it ends too early"));
+    }
+    let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options);
+    decoder.decode_headers().map_err(|e| source.malformed(e.to_string()))?;
+    let info = decoder.info().ok_or_else(|| source.malformed("it has no size"))?;
+    let (width, height) = source.size(u64::from(info.width), u64::from(info.height))?;
+    let bytes = decoder.decode().map_err(|e| source.malformed(e.to_string()))?;
+    source.image(width, height, super::pixels_from_srgb(&bytes))
+}
+
+/// Whether an end follows the last scan: the decoder itself fills up what is missing with grey. Neither marker
+/// can stand in packed pixels.
+fn is_complete(file: &[u8]) -> bool {
+    let last = |marker: u8| file.windows(2).rposition(|pair| pair == [0xff, marker]);
+    last(0xd9) > last(0xda)
+}

@@ -1,0 +1,192 @@
+//! Formats of picture files, each with its writer (a stream of rows) and its reader (a whole image).
+
+mod exr;
+mod hdr;
+mod jpeg;
+mod pfm;
+mod png;
+mod webp;
+
+use crate::output::Destination;
+use crate::tone::Tone;
+use crate::{Format, ImageError, Limits};
+use juggler_math::{Image, Rgb};
+use std::io::{self, BufRead, Seek};
+
+/// Takes a picture row by row, from the top.
+pub trait RowWriter: Send {
+    /// One or more whole rows of linear light.
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError>;
+
+    /// Completes the file, after the last row. Without this call there is no valid file.
+    fn finish(self: Box<Self>) -> Result<(), ImageError>;
+}
+
+/// What a picture file says besides its pixels, and how it says it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// From linear light to levels, for the formats that have levels.
+    pub tone: Tone,
+    /// Choices that some formats leave.
+    pub options: Options,
+    /// Texts by key, in order: the program, the fingerprint, the seed. PNG, EXR and HDR keep them.
+    pub metadata: Vec<(String, String)>,
+}
+
+impl Header {
+    /// A picture of that size, all else by default.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { width, height, tone: Tone::default(), options: Options::default(), metadata: Vec::new() }
+    }
+
+    fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+}
+
+/// Choices that some formats leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Whether a PNG has 16 bits a channel instead of 8.
+    pub png_16_bit: bool,
+    /// Quality of a JPEG, 1 to 100.
+    pub jpeg_quality: u8,
+    /// Precision of an EXR.
+    pub exr_depth: SampleDepth,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { png_16_bit: false, jpeg_quality: 95, exr_depth: SampleDepth::Float }
+    }
+}
+
+/// Precision of a channel in an EXR file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SampleDepth {
+    /// 32 bits: every value as it is.
+    Float,
+    /// 16 bits: 11 bits of precision, up to 65,504.
+    Half,
+}
+
+/// A writer for a format. Wrong sizes are refused here, before anything is written.
+pub fn writer(format: Format, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+    format.check_dimensions(header.width, header.height)?;
+    let inner: Box<dyn RowWriter> = match format {
+        Format::Png => Box::new(png::Writer::new(destination, header)?),
+        Format::Jpeg => Box::new(jpeg::Writer::new(destination, header)),
+        Format::Exr => Box::new(exr::Writer::new(destination, header)?),
+        Format::Hdr => Box::new(hdr::Writer::new(destination, header)?),
+        Format::Webp => Box::new(webp::Writer::new(destination, header)),
+        Format::Pfm => Box::new(pfm::Writer::new(destination, header)?),
+    };
+    Ok(Box::new(Counted { inner, width: u64::from(header.width), left: header.pixels() }))
+}
+
+/// Sees to it that the formats' writers get whole rows, and neither too many nor too few.
+struct Counted {
+    inner: Box<dyn RowWriter>,
+    width: u64,
+    /// Pixels still to come.
+    left: u64,
+}
+
+impl RowWriter for Counted {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        let given = rows.len() as u64;
+        if given > self.left || !given.is_multiple_of(self.width) {
+            return Err(ImageError::Rows { expected: self.left.min(self.width), given });
+        }
+        self.left -= given;
+        if rows.is_empty() { Ok(()) } else { self.inner.write_rows(rows) }
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ImageError> {
+        if self.left > 0 {
+            return Err(ImageError::Rows { expected: self.left, given: 0 });
+        }
+        self.inner.finish()
+    }
+}
+
+/// What a reader reads from.
+pub(crate) trait ReadSeek: BufRead + Seek {}
+impl<T: BufRead + Seek> ReadSeek for T {}
+
+/// A file being read: where it is (for messages), what it should be, and the limits.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub place: &'a str,
+    pub format: Format,
+    pub limits: &'a Limits,
+}
+
+impl Source<'_> {
+    fn malformed(self, message: impl Into<String>) -> ImageError {
+        ImageError::Malformed { place: self.place.into(), format: self.format, message: message.into() }
+    }
+
+    /// A system's failure; the end of the file is one of the file itself.
+    fn failed(self, source: io::Error) -> ImageError {
+        match source.kind() {
+            io::ErrorKind::UnexpectedEof => self.malformed("it ends too early"),
+            io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::Other => {
+                self.malformed(source.to_string())
+            }
+            _ => ImageError::Read { place: self.place.into(), source },
+        }
+    }
+
+    /// Width and height, when there are pixels and not too many.
+    fn size(self, width: u64, height: u64) -> Result<(u32, u32), ImageError> {
+        let most_pixels = self.limits.most_pixels;
+        match (u32::try_from(width), u32::try_from(height)) {
+            (Ok(0), _) | (_, Ok(0)) => Err(self.malformed(format!("its size is {width} × {height}"))),
+            (Ok(w), Ok(h)) if width * height <= most_pixels => Ok((w, h)),
+            _ => Err(ImageError::TooLarge { place: self.place.into(), width, height, most_pixels }),
+        }
+    }
+
+    fn image(self, width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Image, ImageError> {
+        Image::from_pixels(width, height, pixels).ok_or_else(|| self.malformed("it ends too early"))
+    }
+}
+
+/// Reads a picture from its first byte on.
+pub(crate) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    match source.format {
+        Format::Png => png::read(source, bytes),
+        Format::Jpeg => jpeg::read(source, bytes),
+        Format::Exr => exr::read(source, bytes),
+        Format::Hdr => hdr::read(source, bytes),
+        Format::Webp => webp::read(source, bytes),
+        Format::Pfm => pfm::read(source, bytes),
+    }
+}
+
+/// Reads a picture's texts; none for formats that we write none to.
+pub(crate) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
+    match source.format {
+        Format::Png => png::read_metadata(source, bytes),
+        Format::Exr => exr::read_metadata(source, bytes),
+        Format::Hdr => hdr::read_metadata(source, bytes),
+        Format::Jpeg | Format::Webp | Format::Pfm => Ok(Vec::new()),
+    }
+}
+
+/// Linear light of the 256 levels of sRGB.
+fn srgb_levels() -> [f32; 256] {
+    std::array::from_fn(|k| juggler_math::color::srgb_decode(k as f32 / 255.0))
+}
+
+/// Linear pixels of bytes in sRGB, three a pixel.
+fn pixels_from_srgb(bytes: &[u8]) -> Vec<Rgb> {
+    let levels = srgb_levels();
+    let linear = |b: u8| levels[usize::from(b)];
+    bytes.chunks_exact(3).map(|c| Rgb::new(linear(c[0]), linear(c[1]), linear(c[2]))).collect()
+}

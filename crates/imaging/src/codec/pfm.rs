@@ -1,0 +1,114 @@
+//! Portable Float Map: a text header, then floats, rows from the bottom up. (Debevec; a negative scale says
+//! little-endian.)
+
+use super::{Header, ReadSeek, RowWriter, Source};
+use crate::ImageError;
+use crate::output::{Destination, WriteSeek};
+use juggler_math::{Image, Rgb};
+use std::io::{self, BufRead, SeekFrom};
+
+/// Puts rows where they belong: the file is upside down, the rows come from the top.
+pub(super) struct Writer {
+    bytes: Box<dyn WriteSeek>,
+    place: String,
+    /// Length of the text before the pixels.
+    start: u64,
+    width: usize,
+    /// Rows still to come.
+    left: u64,
+    row: Vec<u8>,
+}
+
+impl Writer {
+    pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
+        let place = destination.name().to_owned();
+        let mut bytes = destination.into_seekable();
+        let text = format!("PF\n{} {}\n-1.0\n", header.width, header.height);
+        if let Err(source) = bytes.write_all(text.as_bytes()) {
+            return Err(ImageError::Write { place, source });
+        }
+        let (start, left) = (text.len() as u64, u64::from(header.height));
+        Ok(Self { bytes, place, start, width: header.width as usize, left, row: Vec::new() })
+    }
+
+    fn write(&mut self, rows: &[Rgb]) -> io::Result<()> {
+        let count = (rows.len() / self.width) as u64;
+        self.left -= count;
+        self.bytes.seek(SeekFrom::Start(self.start + self.left * self.width as u64 * 12))?;
+        for row in rows.chunks_exact(self.width).rev() {
+            self.row.clear();
+            self.row.extend(row.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+            self.bytes.write_all(&self.row)?;
+        }
+        Ok(())
+    }
+}
+
+impl RowWriter for Writer {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        self.write(rows).map_err(|source| ImageError::Write { place: self.place.clone(), source })
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
+        self.bytes.flush().map_err(|source| ImageError::Write { place: self.place, source })
+    }
+}
+
+/// A colour or grey PFM; the scale's size is left out, as most readers do.
+pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let head = head(source, bytes)?;
+    let (width, height) = source.size(head.width, head.height)?;
+    let channels = if head.grey { 1 } else { 3 };
+    let mut row = vec![0; width as usize * channels * 4];
+    let mut rows: Vec<Vec<Rgb>> = Vec::new();
+    for _ in 0..height {
+        bytes.read_exact(&mut row).map_err(|e| source.failed(e))?;
+        let sample = |b: &[u8]| {
+            let four = [b[0], b[1], b[2], b[3]];
+            if head.little { f32::from_le_bytes(four) } else { f32::from_be_bytes(four) }
+        };
+        let pixel = |p: &[u8]| {
+            if head.grey { Rgb::splat(sample(p)) } else { Rgb::new(sample(p), sample(&p[4..]), sample(&p[8..])) }
+        };
+        rows.push(row.chunks_exact(channels * 4).map(pixel).collect());
+    }
+    rows.reverse();
+    source.image(width, height, rows.concat())
+}
+
+struct Head {
+    grey: bool,
+    width: u64,
+    height: u64,
+    little: bool,
+}
+
+/// The text: magic, width, height, scale, parted by white space; one such byte ends it.
+fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Head, ImageError> {
+    let mut words = Vec::new();
+    for _ in 0..4 {
+        words.push(word(bytes).map_err(|e| source.failed(e))?);
+    }
+    let (width, height, scale) = (words[1].parse(), words[2].parse(), words[3].parse::<f32>());
+    match (width, height, scale) {
+        (Ok(width), Ok(height), Ok(scale)) if scale.is_finite() && scale != 0.0 => {
+            Ok(Head { grey: words[0] == "Pf", width, height, little: scale < 0.0 })
+        }
+        _ => Err(source.malformed(format!("its head says `{}`", words.join(" ")))),
+    }
+}
+
+/// The next word, at most 24 bytes, and the byte that ends it.
+fn word(bytes: &mut dyn BufRead) -> io::Result<String> {
+    let mut word = String::new();
+    loop {
+        let mut byte = [0];
+        bytes.read_exact(&mut byte)?;
+        match byte[0] {
+            b' ' | b'\n' | b'\r' | b'\t' if word.is_empty() => {}
+            b' ' | b'\n' | b'\r' | b'\t' => return Ok(word),
+            b if b.is_ascii_graphic() && word.len() < 24 => word.push(char::from(b)),
+            _ => return Err(io::Error::new(io::ErrorKind::InvalidData, "its head is not text")),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! WebP, lossless (RFC 9649). The encoder takes a whole picture, so the picture in 8 bits is held.
+
+use super::{Header, ReadSeek, RowWriter, Source};
+use crate::output::Destination;
+use crate::tone::Quantizer;
+use crate::{Format, ImageError};
+use image_webp::{ColorType, DecodingError, EncodingError, WebPDecoder, WebPEncoder};
+use juggler_math::{Image, Rgb};
+use std::io::Write;
+
+/// Gathers rows and encodes them at the end.
+pub(super) struct Writer {
+    destination: Destination,
+    quantizer: Quantizer,
+    size: (u32, u32),
+    bytes: Vec<u8>,
+}
+
+impl Writer {
+    pub fn new(destination: Destination, header: &Header) -> Self {
+        Self {
+            destination,
+            quantizer: Quantizer::new(&header.tone, 255),
+            size: (header.width, header.height),
+            bytes: Vec::with_capacity(header.pixels() as usize * 3),
+        }
+    }
+}
+
+impl RowWriter for Writer {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        self.quantizer.append_bytes(rows, &mut self.bytes);
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ImageError> {
+        let place = self.destination.name().to_owned();
+        let mut bytes = self.destination.into_stream();
+        let encoder = WebPEncoder::new(&mut bytes);
+        let encoded = encoder.encode(&self.bytes, self.size.0, self.size.1, ColorType::Rgb8);
+        let encoded = encoded.and_then(|()| bytes.flush().map_err(EncodingError::IoError));
+        encoded.map_err(|error| match error {
+            EncodingError::IoError(source) => ImageError::Write { place, source },
+            other => ImageError::Encode { place, format: Format::Webp, message: other.to_string() },
+        })
+    }
+}
+
+/// Any still WebP, lossless or lossy, taken as sRGB; alpha is left out.
+pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let unreadable = |error: DecodingError| match error {
+        DecodingError::IoError(error) => source.failed(error),
+        other => source.malformed(other.to_string()),
+    };
+    let mut decoder = WebPDecoder::new(&mut *bytes).map_err(unreadable)?;
+    let (width, height) = decoder.dimensions();
+    let (width, height) = source.size(u64::from(width), u64::from(height))?;
+    let samples = if decoder.has_alpha() { 4 } else { 3 };
+    let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
+    let mut bytes = vec![0; size];
+    decoder.read_image(&mut bytes).map_err(unreadable)?;
+    if samples == 4 {
+        bytes = bytes.chunks_exact(4).flat_map(|c| [c[0], c[1], c[2]]).collect();
+    }
+    source.image(width, height, super::pixels_from_srgb(&bytes))
+}

@@ -1,0 +1,84 @@
+//! How much two pictures of one size differ.
+
+use crate::ImageError;
+use juggler_math::Image;
+
+/// Differences over all pixels and channels of a picture and a reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// Root of the mean squared difference.
+    pub rmse: f64,
+    /// Mean of squared differences relative to the reference, (x - r)² / (r² + 0.01) (Rousselle, Knaus and
+    /// Zwicker 2011): errors in the dark count as much as those in the light.
+    pub relative_mse: f64,
+    /// The largest difference of one channel.
+    pub largest: f64,
+    /// Whether all bits are equal, NaN and signs of zeros included.
+    pub same_bits: bool,
+}
+
+/// Compares a picture with a reference. Channels that are not finite in either count as different by
+/// infinity, unless their bits are equal.
+pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageError> {
+    let sizes = [picture, reference].map(|i| (i.width(), i.height()));
+    if sizes[0] != sizes[1] {
+        return Err(ImageError::SizesDiffer { a: sizes[0], b: sizes[1] });
+    }
+    let (mut squares, mut relative, mut largest, mut same_bits) = (0.0, 0.0, 0.0f64, true);
+    for (a, b) in picture.pixels().iter().zip(reference.pixels()) {
+        for (x, r) in a.to_array().into_iter().zip(b.to_array()) {
+            if x.to_bits() == r.to_bits() {
+                continue;
+            }
+            same_bits = false;
+            let difference = (f64::from(x) - f64::from(r)).abs();
+            let difference = if difference.is_finite() { difference } else { f64::INFINITY };
+            squares += difference * difference;
+            relative +=
+                if r.is_finite() { difference * difference / (f64::from(r) * f64::from(r) + 0.01) } else { difference };
+            largest = largest.max(difference);
+        }
+    }
+    let count = (picture.pixels().len() * 3).max(1) as f64;
+    Ok(Difference { rmse: (squares / count).sqrt(), relative_mse: relative / count, largest, same_bits })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::Rgb;
+
+    fn image(values: &[f32]) -> Image {
+        let pixels: Vec<Rgb> = values.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect();
+        Image::from_pixels(pixels.len() as u32, 1, pixels).unwrap()
+    }
+
+    #[test]
+    fn known_differences() {
+        let found = compare(&image(&[1.0, 2.0, 3.0]), &image(&[1.0, 0.0, 4.0])).unwrap();
+        assert!((found.rmse - (5.0f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert!((found.relative_mse - (400.0 + 1.0 / 16.01) / 3.0).abs() < 1e-9);
+        assert_eq!((found.largest, found.same_bits), (2.0, false));
+    }
+
+    #[test]
+    fn equal_bits_are_no_difference_even_when_not_a_number() {
+        let odd = image(&[f32::NAN, f32::INFINITY, -0.0]);
+        assert_eq!(
+            compare(&odd, &odd).unwrap(),
+            Difference { rmse: 0.0, relative_mse: 0.0, largest: 0.0, same_bits: true }
+        );
+        let zeros = compare(&image(&[0.0, 0.0, 0.0]), &image(&[0.0, -0.0, 0.0])).unwrap();
+        assert!(zeros.largest == 0.0 && !zeros.same_bits);
+        let broken = compare(&image(&[f32::NAN, 0.0, 0.0]), &image(&[0.5, 0.0, 0.0])).unwrap();
+        assert!(broken.rmse == f64::INFINITY && broken.relative_mse == f64::INFINITY);
+        let infinite = compare(&image(&[1.0, 0.0, 0.0]), &image(&[f32::INFINITY, 0.0, 0.0])).unwrap();
+        assert!(infinite.rmse == f64::INFINITY && infinite.relative_mse == f64::INFINITY);
+    }
+
+    #[test]
+    fn sizes_must_agree() {
+        let message = compare(&image(&[0.0; 3]), &image(&[0.0; 6])).unwrap_err().to_string();
+        assert!(message.contains("1×1") && message.contains("2×1"), "{message}");
+    }
+}

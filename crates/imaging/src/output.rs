@@ -1,0 +1,124 @@
+//! Where bytes go: files (replaced only by finished ones), devices, standard output, memory.
+
+use crate::atomic::AtomicFile;
+use crate::{Format, Header, ImageError, RowWriter, writer};
+use juggler_math::{Image, Rgb};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// What can be written at any place.
+pub trait WriteSeek: Write + Seek + Send {}
+impl<T: Write + Seek + Send> WriteSeek for T {}
+
+/// A place for a file's bytes, and its name for messages.
+pub struct Destination {
+    name: String,
+    sink: Sink,
+}
+
+enum Sink {
+    Seekable(Box<dyn WriteSeek>),
+    Stream(Box<dyn Write + Send>),
+}
+
+impl Destination {
+    /// A file, or memory. Should be buffered.
+    pub fn seekable(name: impl Into<String>, sink: impl Write + Seek + Send + 'static) -> Self {
+        Self { name: name.into(), sink: Sink::Seekable(Box::new(sink)) }
+    }
+
+    /// A pipe, where bytes can only follow bytes: formats that need more hold the file in memory.
+    pub fn stream(name: impl Into<String>, sink: impl Write + Send + 'static) -> Self {
+        Self { name: name.into(), sink: Sink::Stream(Box::new(sink)) }
+    }
+
+    /// How messages call it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(crate) fn into_stream(self) -> Box<dyn Write + Send> {
+        match self.sink {
+            Sink::Seekable(sink) => Box::new(sink),
+            Sink::Stream(sink) => sink,
+        }
+    }
+
+    /// To be flushed once, at the end: only then do bytes go down a pipe.
+    pub(crate) fn into_seekable(self) -> Box<dyn WriteSeek> {
+        match self.sink {
+            Sink::Seekable(sink) => sink,
+            Sink::Stream(pipe) => Box::new(Held { pipe, bytes: Cursor::default() }),
+        }
+    }
+}
+
+/// A file held in memory for a pipe, and let go by `flush`.
+struct Held {
+    pipe: Box<dyn Write + Send>,
+    bytes: Cursor<Vec<u8>>,
+}
+
+impl Write for Held {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.pipe.write_all(&std::mem::take(&mut self.bytes).into_inner())?;
+        self.pipe.flush()
+    }
+}
+
+impl Seek for Held {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
+    }
+}
+
+/// A writer to a file, which takes its place when finished and not before. Devices (`/dev/null`) and named pipes
+/// are written as they are.
+pub fn create(path: &Path, format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+    let name = path.display().to_string();
+    let failed = |source| ImageError::Write { place: name.clone(), source };
+    if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+        let device = File::options().write(true).open(path).map_err(failed)?;
+        return writer(format, Destination::stream(name, BufWriter::new(device)), header);
+    }
+    format.check_dimensions(header.width, header.height)?;
+    let file = AtomicFile::create(path).map_err(failed)?;
+    let handle = BufWriter::with_capacity(1 << 16, file.handle().map_err(failed)?);
+    let rows = writer(format, Destination::seekable(name.clone(), handle), header)?;
+    Ok(Box::new(WholeFile { rows, file, name }))
+}
+
+/// A writer to standard output.
+pub fn to_standard_output(format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+    writer(format, Destination::stream("standard output", BufWriter::new(io::stdout())), header)
+}
+
+/// Writes a picture that is already there.
+pub fn write_image(rows: Box<dyn RowWriter>, image: &Image) -> Result<(), ImageError> {
+    let mut rows = rows;
+    rows.write_rows(image.pixels())?;
+    rows.finish()
+}
+
+struct WholeFile {
+    rows: Box<dyn RowWriter>,
+    file: AtomicFile,
+    name: String,
+}
+
+impl RowWriter for WholeFile {
+    fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
+        self.rows.write_rows(rows)
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), ImageError> {
+        let Self { rows, file, name } = *self;
+        rows.finish()?;
+        file.commit().map_err(|source| ImageError::Write { place: name, source })
+    }
+}

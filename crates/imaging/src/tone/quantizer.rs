@@ -1,0 +1,162 @@
+//! The tone formula as a table. A curve never falls, so each level has a smallest input: those thresholds,
+//! found once to the last bit, give exactly the formula's levels without evaluating a power per channel.
+//! Where to look among them says a second table, indexed by an input's exponent and first mantissa bits.
+
+use super::{Tone, level};
+use juggler_math::Rgb;
+
+/// Bits dropped from an f32 to index the second table: what stays is the exponent and 8 bits of mantissa.
+const SHIFT: u32 = 15;
+
+/// Turns linear light into levels, with the results of [`Tone::level`].
+#[derive(Clone, Debug)]
+pub struct Quantizer {
+    gain: f32,
+    /// `thresholds[k]`: the smallest positive input of level k + 1; NaN when there is none.
+    thresholds: Vec<f32>,
+    /// `start[i]`: level of the smallest input in cell i.
+    start: Vec<u16>,
+}
+
+impl Quantizer {
+    /// For levels 0 to `top`.
+    pub fn new(tone: &Tone, top: u16) -> Self {
+        let curve = tone.curve.curve();
+        let mut last = 1;
+        let thresholds: Vec<f32> = (1..=top)
+            .map(|k| {
+                let guess = curve.decode((f64::from(k) - 0.5) / f64::from(top)) as f32;
+                last = first_bits(last, guess.to_bits(), |bits| level(curve, f32::from_bits(bits), top) >= k);
+                if last > f32::INFINITY.to_bits() { f32::NAN } else { f32::from_bits(last) }
+            })
+            .collect();
+        let cells = (f32::INFINITY.to_bits() >> SHIFT) + 2;
+        let mut reached = 0;
+        let start = (0..cells).map(|cell| {
+            let smallest = f32::from_bits((cell << SHIFT).min(f32::INFINITY.to_bits()));
+            while thresholds.get(reached).is_some_and(|&t| t <= smallest) {
+                reached += 1;
+            }
+            reached as u16
+        });
+        let start = start.collect();
+        Self { gain: tone.gain(), thresholds, start }
+    }
+
+    /// The level of a linear value; 0 for NaN.
+    pub fn level(&self, linear: f32) -> u16 {
+        let exposed = linear * self.gain;
+        if exposed > 0.0 {
+            let cell = (exposed.to_bits() >> SHIFT) as usize;
+            let (low, high) = (self.start[cell], self.start[cell + 1]);
+            let within = &self.thresholds[low as usize..high as usize];
+            return low + within.partition_point(|&t| t <= exposed) as u16;
+        }
+        0
+    }
+
+    /// Appends 8-bit levels (for a quantizer of top level 255), three a pixel.
+    pub fn append_bytes(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
+        bytes.extend(pixels.iter().flat_map(|p| p.to_array().map(|v| self.level(v) as u8)));
+    }
+
+    /// Appends 16-bit levels, high byte first, three a pixel.
+    pub fn append_words(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
+        bytes.extend(pixels.iter().flat_map(|p| p.to_array()).flat_map(|v| self.level(v).to_be_bytes()));
+    }
+}
+
+/// The smallest number from `low` up to one above infinity's bits that `holds` (once it holds, it does for
+/// all above), found from a guess by growing steps and then by halves.
+fn first_bits(low: u32, guess: u32, holds: impl Fn(u32) -> bool) -> u32 {
+    let end = f32::INFINITY.to_bits() + 1;
+    let holds = |bits: u32| bits >= end || holds(bits);
+    let (mut below, mut above) = (low, guess.clamp(low, end));
+    let mut step = 1;
+    // Now find `below` that does not hold and `above` that does.
+    while !holds(above) {
+        below = above + 1;
+        above = above.saturating_add(step).min(end);
+        step = step.saturating_mul(2);
+    }
+    step = 1;
+    while above > below {
+        let probe = above.saturating_sub(step).max(below);
+        if !holds(probe) {
+            below = probe + 1;
+            break;
+        }
+        above = probe;
+        step = step.saturating_mul(2);
+    }
+    while below < above {
+        let middle = below + (above - below) / 2;
+        if holds(middle) { above = middle } else { below = middle + 1 }
+    }
+    above
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tone::{AnyCurve, Gamma, Linear};
+    use juggler_math::testing::Random;
+
+    fn tones() -> Vec<Tone> {
+        let curves = [
+            AnyCurve::default(),
+            AnyCurve::Gamma(Gamma { gamma: 2.2 }),
+            AnyCurve::Gamma(Gamma { gamma: 0.3 }),
+            AnyCurve::Gamma(Gamma { gamma: 9.0 }),
+            AnyCurve::Linear(Linear {}),
+        ];
+        let tone = |curve: &AnyCurve, exposure_stops| Tone { curve: curve.clone(), exposure_stops };
+        curves.iter().flat_map(|c| [tone(c, 0.0), tone(c, -2.7)]).collect()
+    }
+
+    #[test]
+    fn the_table_equals_the_formula() {
+        let mut random = Random::new(1);
+        let special = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0, 1.0, f32::MAX, f32::MIN_POSITIVE, 1e-45];
+        for (tone, top) in tones().iter().flat_map(|t| [(t, 255), (t, 65_535)]) {
+            let quantizer = Quantizer::new(tone, top);
+            let any_bits = (0..5_000).map(|_| f32::from_bits(random.bits())).collect::<Vec<_>>();
+            let usual = (0..5_000).map(|_| random.range(-0.1, 1.2)).collect::<Vec<_>>();
+            for x in special.into_iter().chain(any_bits).chain(usual) {
+                assert_eq!(quantizer.level(x), tone.level(x, top), "{tone:?} {top} {x:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn levels_change_exactly_at_their_thresholds() {
+        for tone in tones().iter().filter(|t| t.exposure_stops == 0.0) {
+            let quantizer = Quantizer::new(tone, 255);
+            for &t in &quantizer.thresholds {
+                for x in [t.next_down(), t, t.next_up()] {
+                    assert_eq!(quantizer.level(x), tone.level(x, 255), "{tone:?} {x:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_level_of_both_depths_is_reached_from_its_own_decoded_value() {
+        for top in [255u16, 65_535] {
+            let quantizer = Quantizer::new(&Tone::default(), top);
+            let curve = AnyCurve::default();
+            for k in 0..=top {
+                let linear = curve.curve().decode(f64::from(k) / f64::from(top)) as f32;
+                assert_eq!(quantizer.level(linear), k);
+            }
+        }
+    }
+
+    #[test]
+    fn absurd_gammas_do_not_hang() {
+        for gamma in [1e-30, 1e30, -1.0, 0.0, f64::NAN] {
+            let quantizer = Quantizer::new(&Tone { curve: AnyCurve::Gamma(Gamma { gamma }), exposure_stops: 0.0 }, 255);
+            assert_eq!(quantizer.level(f32::NAN), 0);
+        }
+    }
+}
