@@ -77,7 +77,8 @@ impl Place {
 /// A piece of a file as it may stand in a message: printable, short, in quotes.
 pub(super) fn quote(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
-    let text = String::from_utf8_lossy(bytes);
+    // No character has more than four bytes; one more character shows that there is more.
+    let text = String::from_utf8_lossy(bytes.get(..4 * (LONGEST + 1)).unwrap_or(bytes));
     let shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
     format!("'{shown}{dots}'")

@@ -17,6 +17,8 @@ mod obj;
 mod ply;
 mod sniff;
 mod stl;
+#[cfg(test)]
+mod tests;
 mod text;
 mod weld;
 
@@ -32,7 +34,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     /// The mesh: at least one triangle, indices in range, finite positions and surface coordinates,
-    /// normals of any length but zero. Degenerate triangles are as the file has them.
+    /// finite normals of any length (zero: none here). Degenerate triangles are as the file has them.
     pub mesh: MeshData,
     /// What was left out or repaired, each once with a count.
     pub warnings: Vec<String>,

@@ -72,7 +72,6 @@ impl Values for AsciiValues<'_> {
     }
 
     fn remaining(&self) -> u64 {
-        // The last value of a file may go without a separator.
-        self.0.rest().len() as u64 + 1
+        self.0.rest().len() as u64
     }
 }

@@ -30,29 +30,32 @@ pub(super) trait Values {
 /// Reads what the header promises.
 pub(super) fn read(header: &Header, mut values: impl Values, limits: &Limits) -> Result<Imported, Fault> {
     let vertices = header.elements.iter().find(|element| element.name == "vertex").map_or(0, |element| element.count);
+    check_counts(header, &values)?;
     let mut parts = Parts::default();
     for element in &header.elements {
-        check_count(element, &values)?;
         match element.name.as_str() {
             "vertex" => read_vertices(element, &mut values, limits, &mut parts)?,
             "face" => read_faces(element, &mut values, vertices, limits, &mut parts)?,
             _ => skip_element(element, &mut values, &mut parts.warnings)?,
         }
     }
-    parts.assemble(limits)
+    parts.assemble()
 }
 
-/// Refuses a count of rows for which the file is too short.
-fn check_count(element: &Element, values: &impl Values) -> Result<(), Fault> {
-    let least = row_size(element, values);
-    if element.count.saturating_mul(least) <= values.remaining() {
-        return Ok(());
+/// Refuses counts of rows for which the file is too short, before anything is reserved for them.
+fn check_counts(header: &Header, values: &impl Values) -> Result<(), Fault> {
+    let mut left = values.remaining();
+    for element in &header.elements {
+        let needed = element.count.saturating_mul(row_size(element, values));
+        // The last value of a text may go without a separator.
+        if needed > left.saturating_add(1) {
+            let (count, name) = (element.count, quote(element.name.as_bytes()));
+            let message = format!("{count} rows of {name} are announced, which need at least {needed} bytes");
+            return Err(element.place.fault(format!("{message}, but only {left} are left for them")));
+        }
+        left = left.saturating_sub(needed);
     }
-    let (count, name) = (element.count, quote(element.name.as_bytes()));
-    let left = values.remaining();
-    Err(element
-        .place
-        .fault(format!("{count} rows of {name} are announced, for which the {left} bytes left are too few")))
+    Ok(())
 }
 
 /// The least number of bytes that a row can have.

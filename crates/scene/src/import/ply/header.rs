@@ -3,6 +3,10 @@
 use super::super::error::{Fault, Place, quote};
 use super::super::text::{Scanner, integer};
 
+/// The most elements of a file and properties of an element; real files have a handful, point clouds of
+/// Gaussians some sixty properties.
+const MAX_DECLARATIONS: usize = 1000;
+
 /// What the header promises.
 #[derive(Debug)]
 pub(super) struct Header {
@@ -157,6 +161,9 @@ fn add_element(elements: &mut Vec<Element>, scanner: &mut Scanner<'_>) -> Result
     if elements.iter().any(|element| element.name == name) {
         return Err(scanner.place().fault(format!("element {} is declared twice", quote(name.as_bytes()))));
     }
+    if elements.len() == MAX_DECLARATIONS {
+        return Err(scanner.place().fault(format!("more than {MAX_DECLARATIONS} elements")));
+    }
     elements.push(Element { name, count, properties: Vec::new(), place: scanner.place() });
     Ok(())
 }
@@ -174,6 +181,9 @@ fn add_property(elements: &mut [Element], scanner: &mut Scanner<'_>) -> Result<(
     let name = name(scanner, "the property's name")?;
     if element.column(&name).is_some() {
         return Err(scanner.place().fault(format!("property {} is declared twice", quote(name.as_bytes()))));
+    }
+    if element.properties.len() == MAX_DECLARATIONS {
+        return Err(scanner.place().fault(format!("more than {MAX_DECLARATIONS} properties of one element")));
     }
     element.properties.push(Property { name, length, item });
     Ok(())

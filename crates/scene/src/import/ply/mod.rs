@@ -9,6 +9,8 @@ mod ascii;
 mod binary;
 mod body;
 mod header;
+#[cfg(test)]
+mod tests;
 mod vertices;
 
 use super::error::Fault;

@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
         }
         solid(&mut scanner, &mut soup, limits)?;
     }
-    soup.finish(Vec::new(), limits)
+    soup.finish(Vec::new())
 }
 
 /// What follows the word `solid`, up to and with `endsolid` and its name.

@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
     if let trailing @ 1.. = body.len() - count * FACET {
         warnings.push(format!("{trailing} bytes after the last facet ignored"));
     }
-    soup.finish(warnings, limits)
+    soup.finish(warnings)
 }
 
 fn corner(facet: &[u8], at: usize) -> Vec3 {

@@ -6,6 +6,8 @@
 
 mod ascii;
 mod binary;
+#[cfg(test)]
+mod tests;
 
 pub(super) use binary::is_binary;
 
@@ -43,11 +45,11 @@ impl Soup {
         self.faces.push_triangle(triangle, limits)
     }
 
-    fn finish(self, mut warnings: Vec<String>, limits: &Limits) -> Result<Imported, Fault> {
+    fn finish(self, mut warnings: Vec<String>) -> Result<Imported, Fault> {
         if self.dropped > 0 {
             warnings.push(format!("{} facets with infinite or NaN coordinates left out", self.dropped));
         }
         let positions = self.corners.into_keys().into_iter().map(|key| Vec3::from(key.map(f32::from_bits))).collect();
-        Parts { positions, faces: self.faces, warnings, ..Parts::default() }.assemble(limits)
+        Parts { positions, faces: self.faces, warnings, ..Parts::default() }.assemble()
     }
 }

@@ -3,8 +3,13 @@
 //!
 //! A corner names position, surface coordinate and normal by three indices; corners with equal triples
 //! become one vertex, in the order of their first use. Indices count from 1, or back from the last one with
-//! -1. A face may name a vertex that is defined further down. What a single mesh has no place for (groups,
-//! materials, smoothing groups, lines, curves, colours behind a position) is counted and left out.
+//! -1. A face may name a vertex that is defined further down. A position that is nowhere is an error; a
+//! surface coordinate or normal that is nowhere is left out, for the mesh has its form without it. What a
+//! single mesh has no place for (groups, materials, smoothing groups, lines, curves, colours behind a
+//! position) is counted and left out.
+
+#[cfg(test)]
+mod tests;
 
 use super::assemble::Parts;
 use super::error::{Fault, Place, quote};
@@ -28,7 +33,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
     loop {
         reader.statement(&mut scanner, limits)?;
         if !scanner.next_line() {
-            return reader.finish(limits);
+            return reader.finish();
         }
     }
 }
@@ -38,8 +43,8 @@ struct Reader {
     positions: Vec<Vec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
-    /// The furthest position, surface coordinate and normal named before it was defined, and where.
-    furthest: [Option<(u32, Place)>; 3],
+    /// The furthest position that was named before it was defined, and where.
+    furthest: Option<(u32, Place)>,
     corners: Welder,
     faces: Faces,
     /// The face being read; kept for its memory.
@@ -97,45 +102,37 @@ impl Reader {
             let index =
                 absolute(index, count).ok_or_else(|| scanner.place().fault(out_of_range(index, stream, count)))?;
             triple[stream] = index;
-            let furthest = &mut self.furthest[stream];
-            if index as usize >= count && furthest.is_none_or(|(known, _)| known < index) {
-                *furthest = Some((index, scanner.place()));
-            }
         }
         if parts.next().is_some() {
             return Err(scanner.place().fault(format!("expected {STREAMS}, found {}", quote(word))));
+        }
+        if triple[0] as usize >= counts[0] && self.furthest.is_none_or(|(known, _)| known < triple[0]) {
+            self.furthest = Some((triple[0], scanner.place()));
         }
         Ok(triple)
     }
 
     fn ignore(&mut self, statement: &[u8]) {
-        let name = String::from_utf8_lossy(statement);
-        if let Some(count) = self.ignored.get_mut(name.as_ref()) {
+        let name = quote(statement);
+        if let Some(count) = self.ignored.get_mut(&name) {
             *count += 1;
         } else if self.ignored.len() < NAMED_STATEMENTS {
-            self.ignored.insert(name.into_owned(), 1);
+            self.ignored.insert(name, 1);
         } else {
             self.other_ignored += 1;
         }
     }
 
-    fn check_indices(&self) -> Result<(), Fault> {
-        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
-        for ((furthest, count), name) in self.furthest.iter().zip(counts).zip(NAMES) {
-            if let Some((index, place)) = furthest
-                && *index as usize >= count
-            {
-                let number = u64::from(*index) + 1;
-                return Err(place.fault(format!("{name} index {number}: the file has only {count}")));
-            }
+    fn finish(self) -> Result<Imported, Fault> {
+        let count = self.positions.len();
+        if let Some((index, place)) = self.furthest.filter(|(index, _)| *index as usize >= count) {
+            let number = u64::from(index) + 1;
+            return Err(place.fault(format!("{} index {number}: the file has only {count}", NAMES[0])));
         }
-        Ok(())
-    }
-
-    fn finish(self, limits: &Limits) -> Result<Imported, Fault> {
-        self.check_indices()?;
         let mut warnings = self.ignored_in_words();
-        let keys = self.corners.into_keys();
+        let mut keys = self.corners.into_keys();
+        drop_undefined(&mut keys, 1, self.uvs.len(), &mut warnings);
+        drop_undefined(&mut keys, 2, self.normals.len(), &mut warnings);
         let positions = keys.iter().map(|key| pick(&self.positions, key[0])).collect();
         let normals = if self.normals.is_empty() { Vec::new() } else { all(&keys, 2, &self.normals) };
         let without = keys.iter().filter(|key| key[1] == NONE).count();
@@ -143,7 +140,7 @@ impl Reader {
         if !uvs.is_empty() && without > 0 {
             warnings.push(format!("{without} vertices have no surface coordinates and get 0 0"));
         }
-        Parts { positions, normals, uvs, faces: self.faces, warnings }.assemble(limits)
+        Parts { positions, normals, uvs, faces: self.faces, warnings }.assemble()
     }
 
     fn ignored_in_words(&self) -> Vec<String> {
@@ -151,8 +148,7 @@ impl Reader {
         if self.colors > 0 {
             warnings.push(format!("{} vertices have colours or weights after x y z: ignored", self.colors));
         }
-        let mut kinds: Vec<String> =
-            self.ignored.iter().map(|(name, count)| format!("{count} {}", quote(name.as_bytes()))).collect();
+        let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if self.other_ignored > 0 {
             kinds.push(format!("{} others", self.other_ignored));
         }
@@ -185,6 +181,20 @@ fn out_of_range(index: i64, stream: usize, count: usize) -> String {
         0 => format!("{name} index 0: indices count from 1"),
         ..0 => format!("{name} index {index}: only {count} stand before this line"),
         _ => format!("{name} index {index} is too large"),
+    }
+}
+
+/// Takes out indices beyond the last surface coordinate or normal.
+fn drop_undefined(keys: &mut [[u32; 3]], stream: usize, count: usize, warnings: &mut Vec<String>) {
+    let mut dropped = 0_u64;
+    for index in keys.iter_mut().filter_map(|key| key.get_mut(stream)) {
+        if *index != NONE && *index as usize >= count {
+            *index = NONE;
+            dropped += 1;
+        }
+    }
+    if dropped > 0 {
+        warnings.push(format!("{dropped} vertices name a {} beyond the last, of {count}: ignored", NAMES[stream]));
     }
 }
 

@@ -1,0 +1,244 @@
+//! The rules of PLY, one by one.
+
+use super::super::error::{Fault, Place};
+use super::super::{Imported, Limits};
+use juggler_math::{Vec2, Vec3, vec2, vec3};
+
+fn read(bytes: impl AsRef<[u8]>) -> Imported {
+    super::read(bytes.as_ref(), &Limits::default()).unwrap()
+}
+
+fn fault(bytes: impl AsRef<[u8]>) -> (Place, String) {
+    match super::read(bytes.as_ref(), &Limits::default()).unwrap_err() {
+        Fault::Malformed { place, message } => (place, message),
+        other => panic!("expected a place: {other}"),
+    }
+}
+
+const SQUARE: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                      element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+                      0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+
+/// A header for a square of one polygon, its values as bytes by `number(type, value)`.
+fn binary(format: &str, scalar: &str, length: &str, index: &str, number: impl Fn(&str, u8) -> Vec<u8>) -> Vec<u8> {
+    let mut bytes = format!(
+        "ply\nformat {format} 1.0\ncomment x\nobj_info y\nelement face 1\nproperty list {length} {index} vertex_index\n\
+         element vertex 4\nproperty {scalar} x\nproperty {scalar} y\nproperty {scalar} z\nend_header\n"
+    )
+    .into_bytes();
+    bytes.extend(number(length, 4));
+    bytes.extend([0, 1, 2, 3].into_iter().flat_map(|value| number(index, value)));
+    bytes.extend([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0].into_iter().flat_map(|value| number(scalar, value)));
+    bytes
+}
+
+fn little(kind: &str, value: u8) -> Vec<u8> {
+    match kind {
+        "char" | "uchar" | "int8" | "uint8" => vec![value],
+        "short" | "ushort" | "int16" | "uint16" => u16::from(value).to_le_bytes().to_vec(),
+        "int" | "uint" | "int32" | "uint32" => u32::from(value).to_le_bytes().to_vec(),
+        "float" | "float32" => f32::from(value).to_le_bytes().to_vec(),
+        _ => f64::from(value).to_le_bytes().to_vec(),
+    }
+}
+
+fn big(kind: &str, value: u8) -> Vec<u8> {
+    little(kind, value).into_iter().rev().collect()
+}
+
+#[test]
+fn a_text_with_a_polygon() {
+    let Imported { mesh, warnings } = read(SQUARE);
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, vec3(1.0, 1.0, 0.0), Vec3::Y]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert!(mesh.normals.is_empty() && mesh.uvs.is_empty() && warnings.is_empty());
+}
+
+#[test]
+fn every_type_in_both_byte_orders_face_before_vertex() {
+    let expected = read(SQUARE);
+    let types = "char uchar short ushort int uint float double int8 uint8 int16 uint16 int32 uint32 float32 float64";
+    for scalar in types.split(' ') {
+        for length in types.split(' ') {
+            let index = scalar;
+            let file = binary("binary_little_endian", scalar, length, index, little);
+            assert_eq!(read(&file), expected, "{scalar} {length}");
+            let file = binary("binary_big_endian", scalar, length, index, big);
+            assert_eq!(read(&file), expected, "{scalar} {length}");
+            let text = binary("ascii", scalar, length, index, |_, value| format!("{value} ").into_bytes());
+            let text = String::from_utf8(text).unwrap().replace("4 0 1 2 3 0", "4 0 1 2 3\n0");
+            let text = text.replace("0 0 0 1 0 0 1 1 0 0 1 0", "0 0 0\n1 0 0\n1 1 0\n0 1 0");
+            assert_eq!(read(&text), expected, "{text}");
+        }
+    }
+}
+
+#[test]
+fn odd_white_space_line_ends_and_empty_lines() {
+    let expected = read(SQUARE);
+    assert_eq!(read(SQUARE.replace('\n', "\r\n")), expected);
+    assert_eq!(read(SQUARE.replace('\n', "\r")), expected);
+    assert_eq!(read(SQUARE.replace("element ", "\t element \t ").replace("\n", " \n")), expected);
+    assert_eq!(read(SQUARE.replace("\n1 0 0", "\n\n \n 1\t0  0")), expected);
+    assert_eq!(read(SQUARE.trim_end()), expected);
+    assert_eq!(read(SQUARE.replace("element", "comment \\\ncomment\nobj_info element\n\nelement")), expected);
+    let mut file = binary("binary_little_endian", "float", "uchar", "int", little);
+    let end = file.windows(11).position(|bytes| bytes == b"end_header\n").unwrap() + 10;
+    file.insert(end, b'\r');
+    assert_eq!(read(file), expected);
+}
+
+#[test]
+fn normals_and_surface_coordinates_by_all_their_names() {
+    for names in [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]] {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty uchar red\nproperty float ny\nproperty double {}\n\
+             property float x\nproperty float nx\nproperty list uchar float junk\nproperty float nz\nproperty float y\n\
+             property float z\nproperty float {}\nelement face 1\nproperty uchar flags\n\
+             property list uint ushort vertex_indices\nend_header\n\
+             9 .6 0.1 0 0 0 .8 0 0 0.2\n9 .6 0.3 1 0 2 7 7 .8 0 0 0.4\n9 .6 0.5 0 0 1 7 .8 1 0 0.6\n8 3 0 1 2\n",
+            names[1], names[0]
+        );
+        let Imported { mesh, warnings } = read(text);
+        assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+        assert_eq!(mesh.normals, [vec3(0.0, 0.6, 0.8); 3]);
+        assert_eq!(mesh.uvs, [vec2(0.2, 0.1), vec2(0.4, 0.3), vec2(0.6, 0.5)]);
+        assert_eq!(
+            warnings,
+            ["ignored properties of 'vertex': 'red', 'junk'", "ignored properties of 'face': 'flags'"]
+        );
+    }
+}
+
+#[test]
+fn half_a_set_of_columns_is_ignored() {
+    let text = SQUARE.replace("property float z\n", "property float z\nproperty float nx\nproperty float u\n");
+    let text = text.replace("0\n1", "0 5 6\n1").replace("0\n0", "0 5 6\n0").replace("0\n4", "0 5 6\n4");
+    let Imported { mesh, warnings } = read(text);
+    assert!(mesh.normals.is_empty() && mesh.uvs == Vec::<Vec2>::new());
+    assert_eq!(warnings, ["ignored properties of 'vertex': 'nx', 'u'"]);
+}
+
+#[test]
+fn unknown_elements_are_passed_over() {
+    let text = SQUARE
+        .replace(
+            "element vertex",
+            "element empty 4000000000\nelement edge 2\nproperty list int short a\nproperty int b\nelement vertex",
+        )
+        .replace("end_header\n", "end_header\n2 1 1 5\n0 6\n");
+    let Imported { mesh, warnings } = read(text);
+    assert_eq!(mesh.triangles.len(), 2);
+    assert_eq!(warnings, ["ignored: 4000000000 rows of 'empty'", "ignored: 2 rows of 'edge'"]);
+}
+
+#[test]
+fn a_double_is_rounded_once_in_all_forms() {
+    // Just above the middle between two floats: by way of the nearest double it rounds as the binary form does.
+    let text = SQUARE.replace("float", "double").replace("1 1 0", "1.00000017881393432617187 1 0");
+    let value = 1.000_000_178_813_934_3_f64;
+    assert_eq!(read(text).mesh.positions[2].x, value as f32);
+}
+
+#[test]
+fn counts_that_the_file_cannot_hold_are_refused_at_once() {
+    for count in ["4000000000", "9223372036854775807"] {
+        let (place, message) = fault(SQUARE.replace("vertex 4", &format!("vertex {count}")));
+        assert_eq!(place, Place::Line(3));
+        assert!(message.starts_with(&format!("{count} rows of 'vertex' are announced, which need at least ")));
+        assert!(message.ends_with(" bytes, but only 34 are left for them"), "{message}");
+        let mut file = binary("binary_little_endian", "float", "uchar", "int", little);
+        let at = file.windows(8).position(|bytes| bytes == b"vertex 4").unwrap();
+        file.splice(at + 7..at + 8, count.bytes());
+        assert_eq!(fault(file).0, Place::Line(7));
+    }
+    let mut file = binary("binary_little_endian", "float", "uint", "int", little);
+    let body = file.windows(11).position(|bytes| bytes == b"end_header\n").unwrap() + 11;
+    file[body..body + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+    let (place, message) = fault(&file);
+    assert!(message.contains("vertex index") || message.contains("end of the file"), "{message}");
+    assert!(matches!(place, Place::Byte(byte) if byte > body as u64));
+}
+
+#[test]
+fn faults_name_the_place_and_what_was_expected() {
+    let cases = [
+        ("ply\n", "pli\n", 1, "expected 'ply', found 'pli'"),
+        ("ascii", "binary", 2, "expected 'ascii', 'binary_little_endian' or 'binary_big_endian', found 'binary'"),
+        ("1.0", "2.0", 2, "expected version '1.0', found '2.0'"),
+        ("format ascii 1.0", "", 9, "expected a line 'format ...' before 'end_header'"),
+        ("vertex 4", "vertex -4", 3, "expected the number of rows, found '-4'"),
+        ("vertex 4", "vertex", 3, "expected the number of rows, found the end of the line"),
+        ("float y", "half y", 5, "expected a type (char, uchar, ..., float, double), found 'half'"),
+        ("float y", "float", 5, "expected the property's name, found the end of the line"),
+        ("float y", "float x", 5, "property 'x' is declared twice"),
+        ("face 1", "vertex 1", 7, "element 'vertex' is declared twice"),
+        ("float z", "float w", 3, "expected properties x, y and z of the element 'vertex', each one number"),
+        ("float z", "list uchar float z", 3, "expected properties x, y and z of the element 'vertex', each one number"),
+        ("vertex_indices", "corners", 7, "expected a property 'vertex_indices' of the element 'face'"),
+        ("list uchar int", "int", 7, "expected the property 'vertex_indices' to be a list"),
+        ("element vertex 4", "", 4, "expected 'element' before the first 'property'"),
+        ("end_header", "end", 9, "expected 'element', 'property', 'comment' or 'end_header', found 'end'"),
+        ("\n1 0 0", "\n1 0", 11, "expected a number for z, found the end of the line"),
+        ("\n1 0 0", "\n1 0 0 0", 11, "expected the end of the line, as the header says, found '0'"),
+        ("\n1 0 0", "\n1 x 0", 11, "expected a number for y, found 'x'"),
+        ("\n1 0 0", "\n1 -inf 0", 11, "expected a finite number for y, found -inf"),
+        ("4 0 1 2 3", "4 0 1 2 4", 14, "vertex index 4: there are 4 vertices, from 0"),
+        ("4 0 1 2 3", "4 0 1 2 -1", 14, "vertex index -1: there are 4 vertices, from 0"),
+        ("4 0 1 2 3", "5 0 1 2 3", 14, "expected a vertex index, found the end of the line"),
+        ("4 0 1 2 3", "-4 0 1 2 3", 14, "expected the length of a list, found -4"),
+        ("4 0 1 2 3\n", "", 14, "expected one more row, found the end of the file"),
+    ];
+    for (old, new, line, message) in cases {
+        let (place, found) = fault(SQUARE.replacen(old, new, 1));
+        if old.ends_with("3\n") {
+            assert!(found.contains("1 rows of 'face' are announced"), "{found}");
+            continue;
+        }
+        assert_eq!((place, found.as_str()), (Place::Line(line), message), "{old} -> {new}");
+    }
+}
+
+#[test]
+fn faults_of_binary_files_name_the_byte() {
+    let file = binary("binary_little_endian", "float", "uchar", "int", little);
+    let body = (file.len() - 1 - 4 * 4 - 12 * 4) as u64;
+    let mut wrong = file.clone();
+    wrong[body as usize + 9] = 4;
+    let index = "vertex index 4: there are 4 vertices, from 0".to_owned();
+    assert_eq!(fault(wrong), (Place::Byte(body + 9), index));
+    let mut infinite = file.clone();
+    infinite[body as usize + 17 + 12..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let number = "expected a finite number for x, found inf".to_owned();
+    assert_eq!(fault(infinite), (Place::Byte(body + 17 + 12), number));
+    let fractional = binary("binary_big_endian", "float", "uchar", "double", |kind, value| {
+        if kind == "double" && value == 2 { 2.5_f64.to_be_bytes().to_vec() } else { big(kind, value) }
+    });
+    assert_eq!(fault(fractional).1, "expected a vertex index, found 2.5");
+    let cut = file.split_last().unwrap().1;
+    let end =
+        (Place::Byte(cut.len() as u64 - 3), "expected 4 more bytes, found the end of the file after 3".to_owned());
+    assert_eq!(fault(cut), end);
+}
+
+#[test]
+fn headers_have_an_end() {
+    let elements: String = (0..2000).map(|index| format!("element e{index} 0\n")).collect();
+    let (place, message) = fault(SQUARE.replace("element vertex", &format!("{elements}element vertex")));
+    assert_eq!((place, message.as_str()), (Place::Line(1003), "more than 1000 elements"));
+    let properties: String = (0..2000).map(|index| format!("property int p{index}\n")).collect();
+    let (place, message) = fault(SQUARE.replace("property float x", &format!("{properties}property float x")));
+    assert_eq!((place, message.as_str()), (Place::Line(1004), "more than 1000 properties of one element"));
+}
+
+#[test]
+fn limits_are_kept_and_named() {
+    let check = |limits: Limits, expected: &str| {
+        assert_eq!(super::read(SQUARE.as_bytes(), &limits).unwrap_err().to_string(), expected);
+    };
+    check(Limits { vertices: 3, ..Limits::default() }, "at least 4 vertices, the limit is 3");
+    check(Limits { triangles: 1, ..Limits::default() }, "at least 2 triangles, the limit is 1");
+    let no_faces = SQUARE.replace("face 1", "face 0").replace("4 0 1 2 3\n", "");
+    let fault = super::read(no_faces.as_bytes(), &Limits::default()).unwrap_err();
+    assert_eq!(fault.to_string(), "holds no triangle");
+}

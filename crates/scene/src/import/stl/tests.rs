@@ -1,0 +1,130 @@
+//! The rules of STL, one by one.
+
+use super::super::error::{Fault, Place};
+use super::super::{Imported, Limits};
+use juggler_math::{Vec3, vec3};
+
+fn read(bytes: &[u8]) -> Imported {
+    super::read(bytes, &Limits::default()).unwrap()
+}
+
+fn message(bytes: &[u8]) -> String {
+    super::read(bytes, &Limits::default()).unwrap_err().to_string()
+}
+
+fn facet(corners: [Vec3; 3]) -> String {
+    let lines: String = corners.iter().map(|p| format!("vertex {} {} {}\n", p.x, p.y, p.z)).collect();
+    format!("facet normal 0 0 0\nouter loop\n{lines}endloop\nendfacet\n")
+}
+
+fn binary(header: &str, facets: &[[Vec3; 3]]) -> Vec<u8> {
+    let mut bytes = format!("{header:80}").into_bytes();
+    bytes.extend((facets.len() as u32).to_le_bytes());
+    for corners in facets {
+        bytes.extend([0xff; 12]); // a normal of NaNs
+        bytes.extend(corners.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+const LOWER: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+const UPPER: [Vec3; 3] = [Vec3::X, Vec3 { x: 1.0, y: 1.0, z: 0.0 }, Vec3::Y];
+
+#[test]
+fn text_and_binary_weld_to_the_same_mesh() {
+    let text = format!("solid a name\n{}{}endsolid a name\n", facet(LOWER), facet(UPPER));
+    let from_text = read(text.as_bytes());
+    assert_eq!(from_text.mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, vec3(1.0, 1.0, 0.0)]);
+    assert_eq!(from_text.mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+    assert!(from_text.mesh.normals.is_empty() && from_text.warnings.is_empty());
+    assert_eq!(read(&binary("exported", &[LOWER, UPPER])), from_text);
+    assert_eq!(read(&binary("solid but binary", &[LOWER, UPPER])), from_text);
+}
+
+#[test]
+fn keywords_in_any_case_on_any_lines_and_several_solids() {
+    let text = format!(
+        "SOLID one\nFacet Normal -nan(ind) -nan(ind) x OUTER loop vertex 0 0 0 \nvertex 1 0 0 vertex 0 1e0 0\nendloop EndFacet\nEndSolid one two\n\nsolid\n{}endsolid",
+        facet(UPPER)
+    );
+    assert_eq!(read(text.as_bytes()).mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+}
+
+#[test]
+fn zero_and_minus_zero_are_one_place() {
+    let mirrored = [vec3(-0.0, 0.0, -0.0), Vec3::Y, Vec3::X];
+    let mesh = read(&binary("", &[LOWER, mirrored])).mesh;
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 1]]);
+    assert_eq!(mesh.positions[0].to_array().map(f32::to_bits), [0; 3]);
+}
+
+#[test]
+fn facets_that_are_not_numbers_are_left_out_and_counted() {
+    let broken = [Vec3::ZERO, Vec3::NAN, Vec3::Y];
+    let Imported { mesh, warnings } = read(&binary("", &[broken, LOWER, [Vec3::INFINITY; 3]]));
+    assert_eq!(mesh.triangles, [[0, 1, 2]]);
+    assert_eq!(warnings, ["2 facets with infinite or NaN coordinates left out"]);
+    let text = format!("solid\n{}{}endsolid\n", facet(broken), facet(LOWER));
+    assert_eq!(read(text.as_bytes()).mesh, mesh);
+    let nothing = message(&binary("", &[broken]));
+    assert_eq!(nothing, "holds no triangle (1 facets with infinite or NaN coordinates left out)");
+}
+
+#[test]
+fn colours_and_trailing_bytes_are_counted() {
+    let mut bytes = binary("COLOR=", &[LOWER, UPPER]);
+    bytes[84 + 48] = 7;
+    bytes.extend(b"more");
+    let warnings = read(&bytes).warnings;
+    assert_eq!(warnings, ["attributes (colours) of 1 facets ignored", "4 bytes after the last facet ignored"]);
+}
+
+#[test]
+fn short_binary_files_are_refused_before_anything_is_reserved() {
+    let mut bytes = binary("solid", &[LOWER, UPPER]);
+    bytes.pop();
+    let expected = "byte 80: 2 facets of 50 bytes are announced, but the 99 bytes that follow hold only 1";
+    assert_eq!(message(&bytes), expected);
+    bytes[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert!(message(&bytes).starts_with("byte 80: 4294967295 facets of 50 bytes are announced"));
+    assert_eq!(message(&bytes[..30]), "line 1: expected 'facet' or 'endsolid', found the end of the file");
+    bytes[20] = 0;
+    assert!(message(&bytes[..70]).starts_with("byte 70: expected an STL"));
+}
+
+#[test]
+fn faults_of_texts_name_the_line_and_what_was_expected() {
+    let good = format!("solid\n{}endsolid\n", facet(LOWER));
+    let cases = [
+        ("solid\n", "sold\n", 1, "expected 'solid', found 'sold'"),
+        ("normal", "norm", 2, "expected 'normal', found 'norm'"),
+        ("outer loop", "outer", 4, "expected 'loop', found 'vertex'"),
+        ("vertex 1 0 0", "vertex 1 0", 5, "expected a number for z, found the end of the line"),
+        ("vertex 1 0 0", "vertex 1 a 0", 5, "expected a number for y, found 'a'"),
+        ("vertex 0 1 0\n", "", 6, "expected 'vertex', found 'endloop'"),
+        ("endloop", "vertex 9 9 9", 7, "expected 'endloop', found 'vertex'"),
+        ("endsolid", "endsold", 9, "expected 'facet' or 'endsolid', found 'endsold'"),
+        ("endsolid\n", "", 9, "expected 'facet' or 'endsolid', found the end of the file"),
+    ];
+    for (old, new, line, message) in cases {
+        let text = good.replacen(old, new, 1);
+        match super::read(text.as_bytes(), &Limits::default()).unwrap_err() {
+            Fault::Malformed { place, message: found } => {
+                assert_eq!((place, found.as_str()), (Place::Line(line), message), "{old} -> {new}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+    assert_eq!(message(b""), "holds no triangle");
+}
+
+#[test]
+fn limits_are_kept_and_named() {
+    let bytes = binary("", &[LOWER, UPPER]);
+    let check = |limits: Limits, expected: &str| {
+        assert_eq!(super::read(&bytes, &limits).unwrap_err().to_string(), expected);
+    };
+    check(Limits { triangles: 1, ..Limits::default() }, "at least 2 triangles, the limit is 1");
+    check(Limits { vertices: 3, ..Limits::default() }, "at least 4 vertices, the limit is 3");
+}
