@@ -40,6 +40,14 @@ pub fn first_in_range(ray: &Ray, candidates: [(f64, u32); 2]) -> Option<Hit> {
     candidates.into_iter().find_map(|(t, part)| in_range(ray, t, part))
 }
 
+/// The same ray for arithmetic in `f32`: its range ends before infinity, and is empty when the direction is so
+/// short that its inverse overflows.
+#[inline]
+pub fn within_floats(ray: &Ray) -> Ray {
+    let has_direction = ray.direction.abs().max_element() >= f32::MIN_POSITIVE;
+    ray.up_to(if has_direction { ray.t_max.min(f32::MAX) } else { -1.0 })
+}
+
 /// A hit at `t` if the ray's range holds it once rounded; never at infinity.
 #[inline]
 pub fn in_range(ray: &Ray, t: f64, part: u32) -> Option<Hit> {

@@ -7,6 +7,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::arithmetic::within_floats;
 use super::facet::Facet;
 use super::solid_angle::{area_pdf, area_sample};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
@@ -69,7 +70,7 @@ impl Shape for Triangle {
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let [a, b, c] = self.vertices;
-        let (t, u, v) = intersect_triangle(ray, a, b, c)?;
+        let (t, u, v) = intersect_triangle(&within_floats(ray), a, b, c)?;
         Some(Hit { t, uv: Vec2::new(u, v), part: 0 })
     }
 

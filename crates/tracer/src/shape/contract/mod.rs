@@ -6,6 +6,7 @@ use juggler_math::{DVec3, Frame, Ray, Vec3, warp};
 
 mod descriptions;
 mod distance;
+mod extremes;
 mod follow_up;
 mod hits;
 mod measures;

@@ -53,3 +53,68 @@ fn band() -> Mesh {
     data.triangles = (0..2 * steps).map(|i| [i, i + 1, i + 2]).collect();
     data.into()
 }
+
+fn prepared(data: MeshData) -> Mesh {
+    let mut mesh = Mesh::from(data);
+    mesh.prepare().unwrap();
+    mesh
+}
+
+fn surface_below(mesh: &Mesh, x: f32, z: f32) -> Surface {
+    let ray = Ray::new(Vec3::new(x, 5.0, z), Vec3::NEG_Y);
+    mesh.surface(&ray, &mesh.intersect(&ray).unwrap())
+}
+
+/// One triangle in the plane y = 0 with its front above.
+fn floor(normals: [Vec3; 3]) -> MeshData {
+    MeshData {
+        positions: vec![Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0],
+        triangles: vec![[0, 1, 2]],
+        normals: normals.to_vec(),
+        uvs: Vec::new(),
+    }
+}
+
+#[test]
+fn triangles_without_area_are_counted_and_clones_share() {
+    let mut mesh = globe(24, 12, 1.0, Vec3::ZERO);
+    mesh.prepare().unwrap();
+    assert_eq!(mesh.warnings(), ["48 degenerate triangles ignored"]);
+    assert_eq!((mesh.triangles(), mesh.positions.len()), (576, 0));
+    let clone = mesh.clone();
+    assert!(std::ptr::eq(mesh.data().unwrap(), clone.data().unwrap()));
+    assert_eq!(clone, mesh);
+    let before = mesh.heap_bytes();
+    mesh.prepare().unwrap();
+    assert_eq!(mesh.heap_bytes(), before);
+    assert!(prepared(floor([Vec3::Y; 3])).warnings().is_empty());
+}
+
+#[test]
+fn normals_blend_and_a_globe_of_triangles_shades_like_a_sphere() {
+    let mesh = prepared(floor([Vec3::Y, Vec3::new(0.0, 1.0, 1.0) * 9.0, Vec3::Y]));
+    let surface = surface_below(&mesh, 0.0, 2.0);
+    let expected = (Vec3::Y + Vec3::new(0.0, 1.0, 1.0).normalize()).normalize();
+    assert!(surface.normal == Vec3::Y && surface.shading_normal.distance(expected) < 1e-6);
+    let mut globe = globe(24, 12, 1.0, Vec3::ZERO);
+    globe.prepare().unwrap();
+    let mut random = juggler_math::testing::Random::new(19);
+    for _ in 0..500 {
+        let out = random.unit_vector();
+        let ray = Ray::new(out * 3.0, -out);
+        let surface = globe.surface(&ray, &globe.intersect(&ray).unwrap());
+        assert!(surface.shading_normal.dot(out) > 0.9995 && surface.normal.dot(out) > 0.96, "{out} {surface:?}");
+    }
+}
+
+/// Normals against the winding are turned round as a whole; one that dips below the surface is mirrored up.
+#[test]
+fn shading_normals_stay_on_the_front() {
+    let lean = Vec3::new(0.6, 0.8, 0.0);
+    let inverted = surface_below(&prepared(floor([-lean; 3])), 1.0, 1.0);
+    assert!(inverted.shading_normal.distance(lean) < 1e-6, "{inverted:?}");
+    let dipping = surface_below(&prepared(floor([Vec3::new(0.8, -0.6, 0.0), Vec3::Y, Vec3::Y])), 0.01, 0.01);
+    assert!(dipping.shading_normal.distance(Vec3::new(0.8, 0.6, 0.0)) < 0.02, "{dipping:?}");
+    let missing = surface_below(&prepared(floor([Vec3::ZERO; 3])), 1.0, 1.0);
+    assert_eq!(missing.shading_normal, Vec3::Y);
+}

@@ -13,6 +13,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::arithmetic::within_floats;
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
@@ -124,12 +125,12 @@ impl Shape for Mesh {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let hit = self.prepared.as_ref()?.bvh().closest(ray)?;
+        let hit = self.prepared.as_ref()?.bvh().closest(&within_floats(ray))?;
         Some(Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index })
     }
 
     fn occludes(&self, ray: &Ray) -> bool {
-        self.prepared.as_ref().is_some_and(|p| p.bvh().any(ray))
+        self.prepared.as_ref().is_some_and(|p| p.bvh().any(&within_floats(ray)))
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
