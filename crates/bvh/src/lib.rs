@@ -39,6 +39,7 @@
 
 mod build;
 mod inspect;
+mod lanes;
 mod node;
 mod packet;
 mod single;

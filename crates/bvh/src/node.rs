@@ -3,6 +3,7 @@
 //! 256 bytes in four cache lines: three axes of (eight minima, eight maxima), then eight child words. All
 //! eight boxes are tested together; the loops over `[f32; 8]` are written so that they become vector code.
 
+use crate::lanes::{less_or_equal, max, min};
 use crate::slabs::Slabs;
 use juggler_math::Aabb;
 use std::ops::Range;
@@ -90,22 +91,12 @@ impl Node {
                 let n = (near[i] - slabs.near_origin[axis]) * slabs.near_inverse[axis];
                 let f = (far[i] - slabs.far_origin[axis]) * slabs.far_inverse[axis];
                 // Written so that a NaN leaves the range as it is.
-                enter[i] = if n > enter[i] { n } else { enter[i] };
-                leave[i] = if f < leave[i] { f } else { leave[i] };
+                enter[i] = max(n, enter[i]);
+                leave[i] = min(f, leave[i]);
             }
         }
-        (mask_of(&enter, &leave), enter)
+        (less_or_equal(&enter, &leave), enter)
     }
-}
-
-/// Bit `i` is set where `enter[i] <= leave[i]`.
-#[inline(always)]
-pub(crate) fn mask_of(enter: &[f32; WIDTH], leave: &[f32; WIDTH]) -> u32 {
-    let mut mask = 0;
-    for i in 0..WIDTH {
-        mask |= u32::from(enter[i] <= leave[i]) << i;
-    }
-    mask
 }
 
 #[cfg(test)]

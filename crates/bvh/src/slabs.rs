@@ -15,6 +15,7 @@
 //! (interval arithmetic: Boulos, Wald, Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray
 //! Packets", 2006). Rounding is monotonic, so the interval's result bounds that of each ray exactly.
 
+use crate::lanes::{less_or_equal, max, min};
 use crate::node::WIDTH;
 use juggler_math::{Aabb, Ray, Vec3};
 
@@ -172,7 +173,7 @@ impl Lanes {
     /// The farthest that any ray goes, in the sense of [`cull_distance`].
     #[inline(always)]
     pub fn t_max(&self) -> f32 {
-        self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+        self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a))
     }
 
     /// Which rays meet the box in `slot` of the bounds (bit per lane): bit by bit what
@@ -188,11 +189,11 @@ impl Lanes {
             for i in 0..WIDTH {
                 let n = (near - self.origin[axis][i]) * self.inverse[axis][i];
                 let f = (far - self.origin[axis][i]) * (self.inverse[axis][i] * WIDEN);
-                enter[i] = if n > enter[i] { n } else { enter[i] };
-                leave[i] = if f < leave[i] { f } else { leave[i] };
+                enter[i] = max(n, enter[i]);
+                leave[i] = min(f, leave[i]);
             }
         }
-        crate::node::mask_of(&enter, &leave)
+        less_or_equal(&enter, &leave)
     }
 }
 
@@ -203,7 +204,7 @@ pub(crate) fn entry(ray: &Ray, bounds: &Aabb) -> f32 {
         let direction = ray.direction[axis];
         let near = if direction.is_sign_negative() { bounds.max[axis] } else { bounds.min[axis] };
         let n = (near - ray.origin[axis]) * inverse(direction);
-        enter = if n > enter { n } else { enter };
+        enter = max(n, enter);
     }
     enter
 }

@@ -1,5 +1,6 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
+use crate::lanes::{less, max, min};
 use crate::triangle::{Shear, has_area};
 use crate::{BuildOptions, BuildStats, Bvh, Leaf, PACKET, Quality};
 use juggler_math::{Aabb, Ray, Vec3};
@@ -225,15 +226,15 @@ impl Block {
     #[inline(always)]
     fn candidates(&self, shear: &Shear) -> u32 {
         let [a, b, c] = [self.project(shear, 0), self.project(shear, 1), self.project(shear, 2)];
-        let mut mask = 0;
+        let (mut least, mut most) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
             let u = c[0][lane] * b[1][lane] - c[1][lane] * b[0][lane];
             let v = a[0][lane] * c[1][lane] - a[1][lane] * c[0][lane];
             let w = b[0][lane] * a[1][lane] - b[1][lane] * a[0][lane];
-            let outside = ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0));
-            mask |= u32::from(!outside) << lane;
+            least[lane] = min(u, min(v, w));
+            most[lane] = max(u, max(v, w));
         }
-        mask
+        !(less(&least, &[0.0; LANES]) & less(&[0.0; LANES], &most))
     }
 
     /// Candidates among the first `count` lanes.
