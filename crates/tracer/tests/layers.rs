@@ -1,5 +1,7 @@
 //! Which module may use which: a station of the ray's journey looks back, never ahead.
 
+#![expect(clippy::unwrap_used, reason = "a test")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -10,9 +10,7 @@ mod digest;
 mod filter;
 
 pub use digest::{Digest, Summary};
-pub use filter::{
-    AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent,
-};
+pub use filter::{AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent};
 
 /// Samples in a block.
 pub const BLOCK: u32 = 16;

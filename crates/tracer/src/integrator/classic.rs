@@ -12,7 +12,7 @@ use crate::bsdf::{Cone, Highlight, Phong, cone, fresnel};
 use crate::sampler::Sampler;
 use crate::surface::Surface;
 use crate::world::{Vertex, World};
-use juggler_math::{Rgb, Vec3, fun, warp};
+use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,8 @@ impl Integrator for Classic {
         };
         let seen = Seen::new(world, path, vertex);
         let mut sampler = path.sampler;
-        self.ambient(world, &seen, sampler.next_2d(), emit);
+        self.ambient(world, &seen, sampler, emit);
+        sampler.skip(1);
         for number in 0..world.lights().len() {
             light(world, number, &seen, &sampler, emit);
             sampler.skip(1);
@@ -83,14 +84,14 @@ impl<'a> Seen<'a> {
 impl Classic {
     /// Emission and ambient light. The share that occlusion may take hangs on one ray over the hemisphere,
     /// even over its solid angle.
-    fn ambient(&self, world: &World, seen: &Seen, u: juggler_math::Vec2, emit: &mut Emit) {
+    fn ambient(&self, world: &World, seen: &Seen, mut sampler: Sampler, emit: &mut Emit) {
         let ambient = seen.phong.ambient * world.ambient();
         let Some(distance) = self.occlusion_distance.filter(|_| seen.phong.occlusion > 0.0) else {
             emit.add(seen.phong.emission + ambient);
             return;
         };
         emit.add(seen.phong.emission + ambient * (1.0 - seen.phong.occlusion));
-        let any = warp::uniform_sphere(u);
+        let any = warp::uniform_sphere(sampler.next_2d());
         let direction = if any.dot(seen.normal) < 0.0 { -any } else { any };
         let ray = seen.surface.spawn(direction, seen.time).up_to(distance);
         emit.if_visible(ray, ambient * seen.phong.occlusion);
@@ -157,7 +158,7 @@ fn light(world: &World, number: usize, seen: &Seen, sampler: &Sampler, emit: &mu
     let count = light.shadow_samples().max(1);
     let share = 1.0 / count as f32;
     for i in 0..count {
-        let u = if count == 1 { { *sampler }.next_2d() } else { sampler.part(i, count).next_2d() };
+        let u = if light.is_point() { Vec2::ZERO } else { sampler.part(i, count).next_2d() };
         let Some(sample) = light.sample(seen.surface.point, u) else { continue };
         let reflected = local(seen, sample.wi);
         if reflected.is_black() {

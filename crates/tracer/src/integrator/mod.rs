@@ -1,7 +1,7 @@
 //! Integrators: what a point where a path touches the world adds to the picture, and which rays go on.
 //!
 //! An integrator is a pure function of one vertex. Queues, tiles and threads are the engine's
-//! ([`crate::render`]). Radiance is linear in its rays, so even a tree of mirror, glass and glossy rays is
+//! (module `render`). Radiance is linear in its rays, so even a tree of mirror, glass and glossy rays is
 //! a queue of weighted rays.
 
 use crate::sampler::Sampler;

@@ -141,6 +141,8 @@ fn static_rows(band: &Rect, draw: impl Fn(Rect) + Sync + Send) {
 mod tests {
     use super::*;
 
+    type Draw<'a> = &'a (dyn Fn(Rect) + Sync + Send);
+
     #[test]
     fn bands_cover_every_row_once_and_stay_small() {
         let sizes = [(1, 1), (640, 360), (1920, 1080), (20_000, 20_000), (65_536, 3), (3, 65_536), (0, 0)];
@@ -159,7 +161,7 @@ mod tests {
     #[test]
     fn every_scheduler_draws_every_pixel_once() {
         let band = Rect { x: 3, y: 7, width: 70, height: 41 };
-        let seen = |run: &dyn Fn(&(dyn Fn(Rect) + Sync))| {
+        let seen = |run: &dyn Fn(Draw)| {
             let counts = Mutex::new(vec![0; band.area() as usize]);
             run(&|tile: Rect| {
                 for y in tile.y..tile.y + tile.height {

@@ -86,28 +86,34 @@ impl<'j> Engine<'j> {
             let column = work.pixels.x + (pixel % u64::from(work.pixels.width)) as u32;
             let row = work.pixels.y + (pixel / u64::from(work.pixels.width)) as u32;
             let stream = Sampler::new(self.job.pattern, self.job.seed, UVec2::new(column, row));
-            let last = slots.end.min((pixel + 1) * samples);
-            while at < last {
-                let index = work.samples.start + (at % samples) as u32;
-                self.camera_ray(Vec2::new(column as f32, row as f32), stream.sample(index), slot, queue);
-                slot += 1;
-                at += 1;
-            }
+            let count = (slots.end.min((pixel + 1) * samples) - at) as usize;
+            let first = work.samples.start + (at % samples) as u32;
+            let center = Vec2::new(column as f32, row as f32) + 0.5;
+            self.expose_pixel(center, &stream, first, slot..slot + count as u32, queue);
+            slot += count as u32;
+            at += count as u64;
         }
     }
 
-    #[inline]
-    fn camera_ray(&self, corner: Vec2, mut sampler: Sampler, slot: u32, queue: &mut Queue) {
-        let place = sampler.next_2d();
-        let (film, weight) = if self.job.samples == 1 {
-            (corner + 0.5, 1.0)
-        } else {
-            let sample = self.job.filter.sample(place);
-            (corner + 0.5 + sample.offset, sample.weight)
-        };
-        let lens = if self.job.camera.needs_lens() { sampler.next_2d() } else { Vec2::splat(0.5) };
-        if let Some(ray) = self.job.camera.ray(film, lens, 0.0) {
-            queue.push(ray, Flight { weight: Rgb::splat(weight), slot, depth: 0, sampler: sampler.branch(0) });
+    /// The camera's rays of samples of one pixel, from sample `first` on.
+    fn expose_pixel(&self, center: Vec2, stream: &Sampler, first: u32, slots: Range<u32>, queue: &mut Queue) {
+        let mut places = [Vec2::splat(0.5); PASS as usize];
+        let places = &mut places[..slots.len()];
+        if self.job.samples > 1 {
+            stream.first_points(first, places);
+        }
+        let Job { camera, filter, .. } = self.job;
+        let needs_lens = camera.needs_lens();
+        for (i, (slot, place)) in slots.zip(places).enumerate() {
+            let sample = filter.sample(*place);
+            let (film, weight) =
+                if self.job.samples == 1 { (center, 1.0) } else { (center + sample.offset, sample.weight) };
+            let mut sampler = stream.sample(first + i as u32);
+            sampler.skip(1);
+            let lens = if needs_lens { sampler.next_2d() } else { Vec2::splat(0.5) };
+            if let Some(ray) = camera.ray(film, lens, 0.0) {
+                queue.push(ray, Flight { weight: Rgb::splat(weight), slot, depth: 0, sampler });
+            }
         }
     }
 
@@ -141,8 +147,7 @@ impl<'j> Engine<'j> {
         let world = self.job.world;
         for i in 0..queue.len() {
             let flight = &queue.flights[i];
-            let path =
-                Path { ray: queue.rays[i], weight: flight.weight, depth: flight.depth, sampler: flight.sampler };
+            let path = Path { ray: queue.rays[i], weight: flight.weight, depth: flight.depth, sampler: flight.sampler };
             let mut emit = Emit::new(&mut self.harvest, &path, flight.slot);
             if self.hits[i].is_some() {
                 let vertex = world.vertex(&path.ray, &self.hits[i]);

@@ -90,9 +90,26 @@ impl Sampler {
         }
     }
 
+    /// What [`Sampler::next_2d`] gives first for the samples from `first` on of this pixel: their places on
+    /// the film.
+    pub fn first_points(&self, first: u32, points: &mut [Vec2]) {
+        let seed = self.seed ^ hash::mix(0);
+        match self.pattern {
+            Pattern::Sobol => fill(points, first, |index| sobol::point(index, seed)),
+            Pattern::Stratified { side } => stratified::points_in_order(first, seed, side, points),
+            Pattern::Independent => fill(points, first, |index| independent::point(index, seed)),
+        }
+    }
+
     /// Leaves out `count` dimensions.
     pub fn skip(&mut self, count: u32) {
         self.dimension += count;
+    }
+}
+
+fn fill(points: &mut [Vec2], first: u32, point: impl Fn(u32) -> Vec2) {
+    for (i, place) in points.iter_mut().enumerate() {
+        *place = point(first.wrapping_add(i as u32));
     }
 }
 
@@ -140,6 +157,19 @@ mod tests {
                 };
                 let set: Vec<Vec2> = (side * side..2 * side * side).map(draw).collect();
                 assert!(cells(&set, side, side).iter().all(|c| *c == 1), "side {side}, dimension {dimension}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_in_a_row_are_the_points_one_by_one() {
+        for pattern in [Pattern::Independent, Pattern::Sobol, Pattern::Stratified { side: 5 }] {
+            let pixel = Sampler::new(pattern, 5, UVec2::new(8, 1));
+            for first in [0, 3, 24, 70] {
+                let mut points = [Vec2::ZERO; 60];
+                pixel.first_points(first, &mut points);
+                let expected: Vec<Vec2> = (first..first + 60).map(|i| pixel.sample(i).next_2d()).collect();
+                assert_eq!(points.to_vec(), expected, "{pattern:?} from {first}");
             }
         }
     }

@@ -1,12 +1,65 @@
-//! Objects as the hierarchy's leaves keep them: spheres in world space, everything else by number.
+//! Objects as tracing sees them: spheres in world space, everything else in its own.
 
 use super::{Object, WorldHit};
 use crate::material::MaterialTable;
-use crate::shape::{AnyShape, Hit, intersect_sphere};
+use crate::shape::{AnyShape, Hit, intersect_sphere, sphere_surface};
 use crate::surface::Surface;
 use juggler_math::{Ray, Vec3};
 
-/// One leaf entry.
+/// An object with what is worked out once.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    pub object: Object,
+    /// Centre and radius in the world, for a sphere that is still one there.
+    sphere: Option<(Vec3, f32)>,
+    /// The material is the same everywhere: nobody asks for surface coordinates.
+    plain: bool,
+}
+
+impl Placed {
+    pub fn new(object: Object, materials: &MaterialTable) -> Self {
+        let sphere = match (&object.shape, object.transform.uniform_scale()) {
+            (AnyShape::Sphere(sphere), Some(scale)) => Some((object.transform.origin(), sphere.radius * scale)),
+            _ => None,
+        };
+        let plain = !materials.is_textured(object.material);
+        Self { object, sphere, plain }
+    }
+
+    /// The nearest hit in the ray's range; `number` is the object's.
+    #[inline]
+    pub fn intersect(&self, number: u32, ray: &Ray) -> Option<WorldHit> {
+        let hit = match self.sphere {
+            Some((center, radius)) => intersect_sphere(center, radius, ray)?,
+            None => self.object.shape.intersect(&self.object.transform.ray_to_local(ray))?,
+        };
+        Some(WorldHit { hit, object: number })
+    }
+
+    /// Whether anything is hit in the ray's range.
+    #[inline]
+    pub fn occludes(&self, ray: &Ray) -> bool {
+        match self.sphere {
+            Some((center, radius)) => intersect_sphere(center, radius, ray).is_some(),
+            None => self.object.shape.occludes(&self.object.transform.ray_to_local(ray)),
+        }
+    }
+
+    /// The surface at a hit, world space.
+    #[inline]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        match self.sphere {
+            Some((center, radius)) if self.plain => sphere_surface(center, radius, ray, hit),
+            _ => {
+                let transform = &self.object.transform;
+                self.object.shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
+            }
+        }
+    }
+}
+
+/// One leaf entry. Spheres bring their numbers along; for the others one more look at the object is no
+/// matter.
 #[derive(Clone, Copy, Debug)]
 pub enum Item {
     /// A sphere that is still one in the world.
@@ -18,7 +71,7 @@ pub enum Item {
         /// Number of the object.
         object: u32,
     },
-    /// Anything else: asked in its own space.
+    /// Anything else.
     Other {
         /// Number of the object.
         object: u32,
@@ -26,51 +79,30 @@ pub enum Item {
 }
 
 impl Item {
-    /// How to keep an object.
-    pub fn new(object: &Object, number: u32, _materials: &MaterialTable) -> Self {
-        match (&object.shape, object.transform.uniform_scale()) {
-            (AnyShape::Sphere(sphere), Some(scale)) => {
-                Self::Sphere { center: object.transform.origin(), radius: sphere.radius * scale, object: number }
-            }
-            _ => Self::Other { object: number },
+    pub fn new(placed: &Placed, object: u32) -> Self {
+        match placed.sphere {
+            Some((center, radius)) => Self::Sphere { center, radius, object },
+            None => Self::Other { object },
         }
     }
 
     /// The nearest hit in the ray's range.
     #[inline]
-    pub fn intersect(&self, objects: &[Object], ray: &Ray) -> Option<WorldHit> {
-        match self {
+    pub fn intersect(&self, objects: &[Placed], ray: &Ray) -> Option<WorldHit> {
+        match *self {
             Self::Sphere { center, radius, object } => {
-                Some(WorldHit { hit: intersect_sphere(*center, *radius, ray)?, object: *object })
+                Some(WorldHit { hit: intersect_sphere(center, radius, ray)?, object })
             }
-            Self::Other { object } => intersect(&objects[*object as usize], *object, ray),
+            Self::Other { object } => objects[object as usize].intersect(object, ray),
         }
     }
 
     /// Whether anything is hit in the ray's range.
     #[inline]
-    pub fn occludes(&self, objects: &[Object], ray: &Ray) -> bool {
-        match self {
-            Self::Sphere { center, radius, .. } => {
-                intersect_sphere(*center, *radius, ray).is_some()
-            }
-            Self::Other { object } => occludes(&objects[*object as usize], ray),
+    pub fn occludes(&self, objects: &[Placed], ray: &Ray) -> bool {
+        match *self {
+            Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
+            Self::Other { object } => objects[object as usize].occludes(ray),
         }
     }
-}
-
-/// The nearest hit with one object in the ray's range.
-pub fn intersect(object: &Object, number: u32, ray: &Ray) -> Option<WorldHit> {
-    let hit = object.shape.intersect(&object.transform.ray_to_local(ray))?;
-    Some(WorldHit { hit, object: number })
-}
-
-/// Whether one object is hit in the ray's range.
-pub fn occludes(object: &Object, ray: &Ray) -> bool {
-    object.shape.occludes(&object.transform.ray_to_local(ray))
-}
-
-/// The surface of an object at a hit, world space.
-pub fn surface(object: &Object, ray: &Ray, hit: &Hit) -> Surface {
-    object.shape.surface(&object.transform.ray_to_local(ray), hit).to_world(&object.transform)
 }

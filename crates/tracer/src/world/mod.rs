@@ -15,7 +15,7 @@ mod trace;
 #[cfg(test)]
 mod tests;
 
-use items::Item;
+use items::{Item, Placed};
 
 /// A shape in its place.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ pub struct Geometry {
 
 /// Everything that can be seen.
 pub struct World {
-    objects: Vec<Object>,
+    objects: Vec<Placed>,
     /// Bounded objects in the hierarchy's order.
     items: Vec<Item>,
     bvh: Bvh,
@@ -101,11 +101,12 @@ impl World {
         let bounded_boxes: Vec<Aabb> = bounded.iter().map(|i| boxes[*i as usize]).collect();
         let bvh = Bvh::build(&bounded_boxes, Quality::Balanced);
         let order = bvh.order().iter().map(|position| bounded[*position as usize]);
-        let items = order.map(|object| Item::new(&objects[object as usize], object, &materials)).collect();
         let has_transparency = objects.iter().any(|o| materials.is_transparent(o.material));
+        let objects: Vec<Placed> = objects.into_iter().map(|object| Placed::new(object, &materials)).collect();
+        let items = order.map(|object| Item::new(&objects[object as usize], object)).collect();
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
         let bounds = bounded_boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(*one));
-        let (bvh, lights) = (bvh, lights.into_iter().filter(|light| light.ambient().is_black()).collect());
+        let lights = lights.into_iter().filter(|light| light.ambient().is_black()).collect();
         Self { objects, items, bvh, unbounded, bounds, materials, lights, ambient, background, has_transparency }
     }
 
@@ -136,20 +137,19 @@ impl World {
 
     /// The surface where `ray` made `hit`.
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
-        let object = &self.objects[hit.object as usize];
-        let surface = items::surface(object, ray, &hit.hit);
-        Vertex { surface, material: object.material, object: hit.object }
+        let placed = &self.objects[hit.object as usize];
+        Vertex { surface: placed.surface(ray, &hit.hit), material: placed.object.material, object: hit.object }
     }
 
     /// Counts for reports.
     pub fn geometry(&self) -> Geometry {
         Geometry {
             shapes: self.objects.len(),
-            triangles: self.objects.iter().map(|o| o.shape.triangles()).sum(),
+            triangles: self.objects.iter().map(|o| o.object.shape.triangles()).sum(),
             lights: self.lights.len(),
-            geometry_bytes: size_of::<Object>() * self.objects.len()
+            geometry_bytes: size_of::<Placed>() * self.objects.len()
                 + size_of::<Item>() * self.items.len()
-                + self.objects.iter().map(|o| o.shape.heap_bytes()).sum::<usize>(),
+                + self.objects.iter().map(|o| o.object.shape.heap_bytes()).sum::<usize>(),
             bvh_bytes: self.bvh.bytes(),
         }
     }

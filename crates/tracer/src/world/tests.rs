@@ -28,13 +28,10 @@ fn crowd(random: &mut Random) -> World {
 
 fn brute_force(world: &World, ray: &Ray) -> WorldHit {
     let mut best = WorldHit::NONE;
-    for (number, object) in world.objects.iter().enumerate() {
-        // As the leaves keep it: spheres in world space.
-        let item = Item::new(object, number as u32, &world.materials);
-        if let Some(hit) = item.intersect(&world.objects, &ray.up_to(best.hit.t.min(ray.t_max))) {
-            if hit.hit.t < best.hit.t || (hit.hit.t == best.hit.t && hit.object < best.object) {
-                best = hit;
-            }
+    for (number, placed) in world.objects.iter().enumerate() {
+        let Some(hit) = placed.intersect(number as u32, &ray.up_to(best.hit.t.min(ray.t_max))) else { continue };
+        if hit.hit.t < best.hit.t || (hit.hit.t == best.hit.t && hit.object < best.object) {
+            best = hit;
         }
     }
     best
@@ -74,12 +71,8 @@ fn hierarchy_equals_brute_force_one_by_one_in_batches_and_in_packets() {
 
 #[test]
 fn an_empty_world_is_empty() {
-    let world = World::new(
-        Vec::new(),
-        MaterialTable::default(),
-        Vec::new(),
-        AnyBackground::Solid(Solid { color: Rgb::WHITE }),
-    );
+    let world =
+        World::new(Vec::new(), MaterialTable::default(), Vec::new(), AnyBackground::Solid(Solid { color: Rgb::WHITE }));
     let mut ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert!(!world.closest(&mut ray).is_some());
     assert_eq!(world.background(&ray), Rgb::WHITE);

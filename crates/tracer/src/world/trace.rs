@@ -1,6 +1,6 @@
 //! The questions that rays ask: what is nearest, is anything in the way, how much light gets through.
 
-use super::{World, WorldHit, items};
+use super::{World, WorldHit};
 use juggler_bvh::Leaf;
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
@@ -57,9 +57,9 @@ impl World {
     fn closest_unbounded(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
         hits.fill(WorldHit::NONE);
         for number in &self.unbounded {
-            let object = &self.objects[*number as usize];
+            let placed = &self.objects[*number as usize];
             for (ray, best) in rays.iter_mut().zip(&mut *hits) {
-                if let Some(hit) = items::intersect(object, *number, ray) {
+                if let Some(hit) = placed.intersect(*number, ray) {
                     keep(best, hit, ray);
                 }
             }
@@ -97,7 +97,7 @@ impl World {
             let occluded = &mut occluded[..rays.len()];
             any(rays, occluded, &mut Nearest { world: self, hits: &mut [] });
             for ((ray, occluded), through) in rays.iter().zip(occluded).zip(through) {
-                let blocked = *occluded || self.unbounded.iter().any(|i| items::occludes(&self.objects[*i as usize], ray));
+                let blocked = *occluded || self.unbounded.iter().any(|i| self.objects[*i as usize].occludes(ray));
                 *through = if blocked { Rgb::BLACK } else { Rgb::WHITE };
             }
         }
