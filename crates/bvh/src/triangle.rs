@@ -22,7 +22,8 @@ const SAFE: std::ops::Range<f32> = 1e-24..1e30;
 /// that meets an edge or a corner hits at least one of the triangles there. Triangles without area are
 /// never hit.
 pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, f32, f32)> {
-    Shear::of(ray).intersect(ray, [a, b, c])
+    let hit = Shear::of(ray).intersect(ray, [a, b, c])?;
+    has_area([a, b, c]).then_some(hit)
 }
 
 /// Whether the triangle is one: finite, and with an area that is not zero in double precision.
@@ -62,11 +63,13 @@ impl Shear {
         [x - self.factors[0] * z, y - self.factors[1] * z, self.factors[2] * z]
     }
 
-    /// [`intersect_triangle`] for the ray that the shear was made of.
+    /// [`intersect_triangle`] for the ray that the shear was made of, and a triangle that
+    /// [has an area](has_area).
+    #[inline]
     pub fn intersect(&self, ray: &Ray, vertices: [Vec3; 3]) -> Option<(f32, f32, f32)> {
         let points = vertices.map(|vertex| self.project(vertex));
         let (t, u, v) = weigh(points)?;
-        if !has_area(vertices) {
+        if t > ray.t_max {
             return None;
         }
         let start = entry(ray, &Aabb::from_points(vertices));

@@ -1,2 +1,37 @@
-//! The juggler program.
-fn main() {}
+//! The program `juggler`: what was typed ([`args`]), what it means ([`plan`]), and doing it ([`command`]).
+
+mod args;
+mod command;
+mod console;
+mod failure;
+mod format;
+mod interrupt;
+mod output;
+mod plan;
+mod progress;
+mod source;
+mod stats;
+mod value;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args = match args::Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => {
+            // Help and version go to standard output, mistakes to standard error; a closed pipe is no mistake.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+        }
+    };
+    match args.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if let Some(message) = failure.message(console::color()) {
+                console::say(&message);
+            }
+            failure.into()
+        }
+    }
+}

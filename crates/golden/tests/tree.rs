@@ -54,7 +54,7 @@ fn no_source_file_is_long() {
 #[test]
 fn every_dependency_has_a_licence_that_fits() {
     let output = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1", "--locked", "--offline"])
+        .args(["metadata", "--format-version", "1", "--locked"])
         .current_dir(root())
         .output()
         .unwrap();

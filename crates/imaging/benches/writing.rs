@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "that is its purpose")]
 
 use juggler_imaging::tone::Quantizer;
-use juggler_imaging::{Destination, Format, Header, ImageError, Options, Tone, writer};
+use juggler_imaging::{Destination, ExrCompression, Format, Header, ImageError, Options, Tone, writer};
 use juggler_math::Rgb;
 use juggler_math::testing::Random;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -72,6 +72,13 @@ fn main() -> Result<(), ImageError> {
         .collect();
     tone(&pixels);
     let mut header = Header::new(SIZE.0, SIZE.1);
+    for exr_compression in [ExrCompression::None, ExrCompression::Zip] {
+        header.options = Options { exr_compression, ..Options::default() };
+        let size = write(Format::Exr, &header, &pixels)?;
+        let time = milliseconds(|| drop(write(Format::Exr, &header, &pixels)));
+        println!("EXR {exr_compression:?}: {time:.1} ms, {:.2} MB", size as f64 * 1e-6);
+    }
+    header.options = Options::default();
     for format in Format::ALL.into_iter().chain([Format::Png]) {
         let size = write(format, &header, &pixels)?;
         let time = milliseconds(|| drop(write(format, &header, &pixels)));

@@ -108,7 +108,7 @@ impl Format {
             Self::Exr => {
                 let pixel = if header.options.exr_depth == SampleDepth::Half { 6 } else { 12 };
                 let pipe = if seekable { 0 } else { whole(pixel).saturating_mul(2) };
-                (width * 16 * (12 + pixel * 6)).saturating_add(height).saturating_add(pipe)
+                (width * 16 * (12 + pixel * 6)).saturating_add(height * 24).saturating_add(pipe)
             }
             Self::Hdr => width * 16,
             // The picture in 8 bits with alpha and without, and the packed picture as it grows.

@@ -19,7 +19,7 @@ pub mod input;
 pub mod output;
 pub mod tone;
 
-pub use codec::{Header, Options, RowWriter, SampleDepth, writer};
+pub use codec::{ExrCompression, Header, Options, RowWriter, SampleDepth, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;
 pub use format::Format;

@@ -5,8 +5,8 @@ mod common;
 use common::{encode, encode_by, header, picture, read};
 use juggler_imaging::tone::Gamma;
 use juggler_imaging::{
-    AnyCurve, Destination, Format, Header, ImageError, Options, SampleDepth, Tone, compare, create, read_metadata,
-    write_image, writer,
+    AnyCurve, Destination, ExrCompression, Format, Header, ImageError, Options, SampleDepth, Tone, compare, create,
+    read_metadata, write_image, writer,
 };
 use juggler_math::{Image, Rgb};
 use std::path::Path;
@@ -39,9 +39,12 @@ fn pfm_keeps_every_bit() {
 
 #[test]
 fn exr_floats_keep_every_bit_and_halves_eleven() {
-    check(Format::Exr, header, 1e9, |_, _| 0.0);
-    let options = Options { exr_depth: SampleDepth::Half, ..Options::default() };
-    check(Format::Exr, |i| Header { options, ..header(i) }, 6e4, |_, x| x.abs() / 2048.0 + 3e-8);
+    for exr_compression in [ExrCompression::None, ExrCompression::Rle, ExrCompression::Zip] {
+        let options = Options { exr_compression, ..Options::default() };
+        check(Format::Exr, |i| Header { options, ..header(i) }, 1e9, |_, _| 0.0);
+        let options = Options { exr_depth: SampleDepth::Half, ..options };
+        check(Format::Exr, |i| Header { options, ..header(i) }, 6e4, |_, x| x.abs() / 2048.0 + 3e-8);
+    }
 }
 
 #[test]

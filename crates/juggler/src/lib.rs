@@ -1,1 +1,36 @@
-//! juggler
+//! Juggler, a ray tracer whose pictures are the same to the bit everywhere.
+//!
+//! ```
+//! use juggler::prelude::*;
+//!
+//! let red = Phong { diffuse: Rgb::new(0.8, 0.1, 0.1).into(), ..Phong::default() };
+//! let scene = Scene::new()
+//!     .size(32, 18)
+//!     .material("red", red)
+//!     .add(Object::new(Sphere::default()).at(0.0, 1.0, 0.0).material_named("red"));
+//! let image = juggler::render(&scene, &Settings { samples: Some(4), ..Settings::default() })?;
+//! assert_eq!((image.width(), image.height()), (32, 18));
+//! # Ok::<(), juggler::Error>(())
+//! ```
+//!
+//! - [`Scene`](scene::Scene) is built here or loaded from a file,
+//! - [`Settings`] say what is wanted beyond what the scene says,
+//! - [`render()`] makes an image in memory, [`render_to_file`] a file of any size,
+//! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards.
+//!
+//! Rendering uses the current rayon thread pool. The crates behind: [`math`], [`tracer`], [`scene`],
+//! [`imaging`]. The folder `examples/` is a course in four steps.
+
+mod error;
+mod kinds;
+mod picture;
+pub mod prelude;
+mod settings;
+
+pub use error::Error;
+pub use juggler_imaging as imaging;
+pub use juggler_math as math;
+pub use juggler_scene as scene;
+pub use juggler_tracer as tracer;
+pub use picture::{Outcome, Picture, render, render_to_file};
+pub use settings::Settings;

@@ -2,8 +2,9 @@
 //!
 //! 1. [`document`]: texts into one tree that knows where everything was written, includes merged;
 //! 2. [`animate`] resolves every `"=expression"` for one frame;
-//! 3. the tree becomes a [`description`], the types that are the format;
-//! 4. [`compile`] places groups, looks up names, prepares shapes and makes a world.
+//! 3. [`validate`] holds the tree against the [`schema`], which the types of the [`description`] give;
+//! 4. the tree becomes a description;
+//! 5. [`compile`] places groups, looks up names, prepares shapes and makes a world.
 //!
 //! Whatever is wrong becomes a [`report`] with file, line, column, path and what was probably meant.
 
@@ -12,14 +13,20 @@ pub mod compile;
 pub mod description;
 pub mod document;
 pub mod expression;
+mod fingerprint;
 pub mod import;
 mod kind;
 pub mod path;
+mod presets;
 pub mod report;
 mod scene;
+pub mod schema;
 pub mod suggest;
+pub mod validate;
 
 pub use compile::Compiled;
 pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};
+pub use presets::{BuiltIn, built_in_scenes};
 pub use report::{Problem, Problems, Severity};
 pub use scene::{Scene, SceneError};
+pub use schema::schema_json;

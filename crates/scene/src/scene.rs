@@ -1,10 +1,11 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::animate;
-use crate::compile::{Assembly, Compiled};
-use crate::description::{Backdrop, Description, Object};
+use crate::compile::{Assembly, Compiled, Files, Library};
+use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, read_text};
 use crate::report::{Finding, Problems, plain_io};
+use crate::validate::validate;
+use crate::{animate, fingerprint, schema};
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
@@ -62,6 +63,8 @@ pub struct Scene {
     pub description: Description,
     /// Where it was read from.
     origin: Option<Arc<Origin>>,
+    /// Mesh files that were loaded, for copies of this scene and its other frames.
+    library: Library,
 }
 
 /// A scene's files, and its tree at the frame.
@@ -90,47 +93,83 @@ impl Scene {
     /// Reads a scene from a text. `name` is what messages call it; files that the scene names are looked for in
     /// the folder of `name`.
     pub fn from_json(text: impl Into<String>, name: &str) -> Result<Self, SceneError> {
-        let document = Document::read(name, text.into())
+        let (document, findings) = Document::read(name, text.into())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, None)))?;
-        Self::resolve(Arc::new(document), 0.0)
+        Self::resolve(Arc::new(document), findings, 0.0, Library::default())
     }
 
     /// The same scene at another frame, which may lie between two. A scene that was not read from a file has no
     /// expressions and stays as it is; changes made since a scene was read are lost.
     pub fn at_frame(&self, frame: f64) -> Result<Self, SceneError> {
         match &self.origin {
-            Some(origin) => Self::resolve(Arc::clone(&origin.document), frame),
+            Some(origin) => Self::resolve(Arc::clone(&origin.document), Vec::new(), frame, self.library.clone()),
             None => Ok(self.clone()),
         }
     }
 
-    fn resolve(document: Arc<Document>, frame: f64) -> Result<Self, SceneError> {
-        let (resolved, mut findings) = animate::resolve(&document.tree, &document.sources, frame);
-        match serde_path_to_error::deserialize(resolved.to_json()) {
-            Ok(description) if findings.is_empty() => {
-                Ok(Self { description, origin: Some(Arc::new(Origin { document, resolved })) })
-            }
-            Ok(_) => Err(problems(findings, &document, &resolved)),
-            Err(error) => {
-                let path = crate::path::Path::root().join(&error.path().to_string());
-                findings.push(Finding::error(error.into_inner().to_string()).at(&path));
-                Err(problems(findings, &document, &resolved))
-            }
+    fn resolve(
+        document: Arc<Document>,
+        mut findings: Vec<Finding>,
+        frame: f64,
+        library: Library,
+    ) -> Result<Self, SceneError> {
+        let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, frame);
+        findings.extend(wrong);
+        let description = described(&resolved, &mut findings);
+        let origin = Arc::new(Origin { document, resolved });
+        let whole = description.is_some() && findings.is_empty();
+        let scene = Self { description: description.unwrap_or_default(), origin: Some(origin), library };
+        if whole {
+            return Ok(scene);
         }
+        // What could be read is checked too, so that all mistakes come at once.
+        let more = Assembly::of(&scene.description, scene.files()).1;
+        Err(SceneError::Problems(scene.report(joined(findings, more))))
     }
 
     /// All that is wrong with the scene, warnings included, without building the world.
     pub fn check(&self) -> Problems {
-        self.report(Assembly::of(&self.description).1)
+        let more = Assembly::of(&self.description, self.files()).1;
+        self.report(joined(self.own_findings(), more))
     }
 
     /// Builds the world.
     pub fn compile(&self) -> Result<Compiled, SceneError> {
-        let (assembly, findings) = Assembly::of(&self.description);
-        if findings.iter().any(Finding::is_error) {
-            return Err(SceneError::Problems(self.report(findings)));
+        let (assembly, more) = Assembly::of(&self.description, self.files());
+        let findings = joined(self.own_findings(), more);
+        let broken = findings.iter().any(Finding::is_error);
+        let problems = self.report(findings);
+        if broken {
+            return Err(SceneError::Problems(problems));
         }
-        Ok(assembly.compile(self.description.render.clone()))
+        Ok(assembly.compile(self.description.render.clone(), problems))
+    }
+
+    /// A hash of everything that decides the pixels, however many samples are taken.
+    pub fn fingerprint(&self) -> String {
+        fingerprint::of(&self.description, &self.files())
+    }
+
+    /// The scene as a file, expressions resolved.
+    pub fn to_json(&self) -> String {
+        let still = Description { animation: Animation::default(), ..self.description.clone() };
+        let mut json = serde_json::to_value(&still).unwrap_or_default();
+        schema::tidy(&mut json);
+        schema::drop_nulls(&mut json);
+        serde_json::to_string_pretty(&json).unwrap_or_default()
+    }
+
+    /// What does not fit the schema. A scene from a file has been checked when it was read.
+    fn own_findings(&self) -> Vec<Finding> {
+        match &self.origin {
+            Some(_) => Vec::new(),
+            None => validate(&serde_json::to_value(&self.description).unwrap_or_default().into()).findings,
+        }
+    }
+
+    fn files(&self) -> Files<'_> {
+        let origin = self.origin.as_deref().map(|origin| (&origin.document.sources, &origin.resolved));
+        Files { origin, library: &self.library }
     }
 
     fn report(&self, findings: Vec<Finding>) -> Problems {
@@ -139,15 +178,31 @@ impl Scene {
             None => Problems::new(findings, Sources::default(), None),
         }
     }
-
-    /// The scene as a file, expressions resolved.
-    pub fn to_json(&self) -> String {
-        serde_json::to_string_pretty(&self.description).unwrap_or_default()
-    }
 }
 
-fn problems(findings: Vec<Finding>, document: &Document, resolved: &Node) -> SceneError {
-    SceneError::Problems(Problems::new(findings, document.sources.clone(), Some(resolved)))
+/// Findings of an early step with those of a later one. What the early step found wrong, the later one need not
+/// find wrong again.
+fn joined(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
+    let fresh = |finding: &Finding| !early.iter().any(|known| known.covers(finding));
+    let mut later: Vec<Finding> = later.into_iter().filter(fresh).collect();
+    early.append(&mut later);
+    early
+}
+
+/// The types of a tree, as far as it fits them, and all that is wrong with it: what does not fit the schema, and
+/// what is wrong with the rest.
+fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Description> {
+    let mut validated = validate(tree);
+    findings.append(&mut validated.findings);
+    match serde_path_to_error::deserialize(validated.json?) {
+        Ok(description) => Some(description),
+        Err(error) => {
+            // The schema allows what the types refuse: only a slip of ours can bring us here.
+            let path = crate::path::Path::root().join(&error.path().to_string());
+            findings.push(Finding::error(error.into_inner().to_string()).at(&path));
+            None
+        }
+    }
 }
 
 /// Building a scene.

@@ -1,5 +1,7 @@
 //! What the format promises, by example.
 
+#![expect(clippy::unwrap_used, reason = "a test")]
+
 use juggler_scene::{Scene, SceneError};
 
 const SKELETON: &str = r##"{
@@ -17,7 +19,7 @@ const SKELETON: &str = r##"{
 }"##;
 
 fn scene(text: &str) -> Scene {
-    Scene::from_json(text, "test.json").unwrap_or_else(|e| panic!("{e}"))
+    Scene::from_json(text, "test.json").unwrap()
 }
 
 #[test]

@@ -1,8 +1,8 @@
-//! OpenEXR: one part of scanlines in blocks of 16, packed by ZIP, channels B, G, R as floats or halves; values
+//! OpenEXR: one part of scanlines, channels B, G, R as floats or halves, plain or packed; values
 //! are scene-referred and no tone curve applies. The header is written here, in a fixed order, since the bytes of
 //! equal pictures must be equal; blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
 
-use super::{Header, ReadSeek, RowWriter, SampleDepth, Source};
+use super::{ExrCompression, Header, ReadSeek, RowWriter, SampleDepth, Source};
 use crate::output::{Destination, WriteSeek};
 use crate::{Format, ImageError};
 use exr::block::{BlockIndex, UncompressedBlock};
@@ -15,8 +15,6 @@ use exr::prelude::{Compression, ReadChannels, ReadLayers, f16};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Read, SeekFrom};
 
-/// Rows in a block of ZIP.
-const BLOCK_ROWS: usize = 16;
 /// The version, and the flag for names of more than 31 bytes.
 const VERSION: u32 = 2;
 const LONG_NAMES: u32 = 0x400;
@@ -29,6 +27,7 @@ pub(super) struct Writer {
     depth: SampleDepth,
     width: usize,
     height: usize,
+    block_rows: usize,
     /// Rows of a block that is not full yet.
     pending: Vec<Rgb>,
     /// Where the table of offsets stands, and the file's end so far.
@@ -43,19 +42,21 @@ impl Writer {
         let mut bytes = destination.into_seekable();
         let start = header_bytes(header);
         let (width, height) = (header.width as usize, header.height as usize);
-        let offsets = Vec::with_capacity(height.div_ceil(BLOCK_ROWS));
+        let block_rows = packing(header.options.exr_compression).scan_lines_per_block();
+        let blocks = height.div_ceil(block_rows);
+        let offsets = Vec::with_capacity(blocks);
         let table = start.len() as u64;
-        let end = table + 8 * height.div_ceil(BLOCK_ROWS) as u64;
+        let end = table + 8 * blocks as u64;
         let written = bytes.write_all(&start).and_then(|()| bytes.seek(SeekFrom::Start(end)));
         if let Err(source) = written {
             return Err(ImageError::Write { place, source });
         }
         let (depth, headers) = (header.options.exr_depth, [description(header)]);
-        Ok(Self { bytes, place, headers, depth, width, height, pending: Vec::new(), table, end, offsets })
+        Ok(Self { bytes, place, headers, depth, width, height, block_rows, pending: Vec::new(), table, end, offsets })
     }
 
     fn write_block(&mut self) -> Result<(), ImageError> {
-        let y = self.offsets.len() * BLOCK_ROWS;
+        let y = self.offsets.len() * self.block_rows;
         let rows = self.pending.len() / self.width;
         let index =
             BlockIndex { layer: 0, pixel_position: Vec2(0, y), pixel_size: Vec2(self.width, rows), level: Vec2(0, 0) };
@@ -83,8 +84,8 @@ impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
         for row in rows.chunks_exact(self.width) {
             self.pending.extend(row);
-            let done = self.offsets.len() * BLOCK_ROWS + self.pending.len() / self.width;
-            if self.pending.len() == self.width * BLOCK_ROWS || done == self.height {
+            let done = self.offsets.len() * self.block_rows + self.pending.len() / self.width;
+            if self.pending.len() == self.width * self.block_rows || done == self.height {
                 self.write_block()?;
             }
         }
@@ -113,6 +114,14 @@ fn planes(rows: &[Rgb], width: usize, depth: SampleDepth) -> Vec<u8> {
     data
 }
 
+fn packing(compression: ExrCompression) -> Compression {
+    match compression {
+        ExrCompression::None => Compression::Uncompressed,
+        ExrCompression::Rle => Compression::RLE,
+        ExrCompression::Zip => Compression::ZIP16,
+    }
+}
+
 /// What the packer needs to know.
 fn description(header: &Header) -> ExrHeader {
     let sample_type = match header.options.exr_depth {
@@ -122,7 +131,7 @@ fn description(header: &Header) -> ExrHeader {
     let channels = ["B", "G", "R"].map(|name| ChannelDescription::new(name, sample_type, false));
     let size = (header.width as usize, header.height as usize);
     let plain = ExrHeader::new("".into(), size, channels.into_iter().collect());
-    plain.with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+    plain.with_encoding(packing(header.options.exr_compression), BlockDescription::ScanLines, LineOrder::Increasing)
 }
 
 /// Magic, version and attributes, ours after the required ones.
@@ -145,7 +154,12 @@ fn header_bytes(header: &Header) -> Vec<u8> {
     channels.push(0);
     let window: Vec<u8> = [0, 0, header.width - 1, header.height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
     attribute("channels", "chlist", &channels);
-    attribute("compression", "compression", &[3]);
+    let code = match header.options.exr_compression {
+        ExrCompression::None => 0,
+        ExrCompression::Rle => 1,
+        ExrCompression::Zip => 3,
+    };
+    attribute("compression", "compression", &[code]);
     attribute("dataWindow", "box2i", &window);
     attribute("displayWindow", "box2i", &window);
     attribute("lineOrder", "lineOrder", &[0]);

@@ -57,11 +57,18 @@ pub struct Options {
     pub jpeg_quality: u8,
     /// Precision of an EXR.
     pub exr_depth: SampleDepth,
+    /// Packing of an EXR; nothing is lost by any.
+    pub exr_compression: ExrCompression,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { png_16_bit: false, jpeg_quality: 95, exr_depth: SampleDepth::Float }
+        Self {
+            png_16_bit: false,
+            jpeg_quality: 95,
+            exr_depth: SampleDepth::Float,
+            exr_compression: ExrCompression::Rle,
+        }
     }
 }
 
@@ -72,6 +79,17 @@ pub enum SampleDepth {
     Float,
     /// 16 bits: 11 bits of precision, up to 65,504.
     Half,
+}
+
+/// Packing of an EXR file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExrCompression {
+    /// As large as the numbers are.
+    None,
+    /// Runs: fast, good for flat areas (empty backgrounds, features for denoisers) and little else.
+    Rle,
+    /// Deflate: twenty times slower, worth it for halves and pictures without noise.
+    Zip,
 }
 
 /// A writer for a format. Wrong sizes are refused here, before anything is written.

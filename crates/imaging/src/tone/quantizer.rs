@@ -12,7 +12,7 @@ const SHIFT: u32 = 15;
 #[derive(Clone, Debug)]
 pub struct Quantizer {
     gain: f32,
-    /// `thresholds[k]`: the smallest positive input of level k + 1; NaN when there is none.
+    /// `thresholds[k]`: the smallest positive input of level k + 1; NaN when there is none, as for k = top.
     thresholds: Vec<f32>,
     /// `start[i]`: level of the smallest input in cell i.
     start: Vec<u16>,
@@ -23,13 +23,14 @@ impl Quantizer {
     pub fn new(tone: &Tone, top: u16) -> Self {
         let curve = tone.curve.curve();
         let mut last = 1;
-        let thresholds: Vec<f32> = (1..=top)
+        let thresholds = (1..=top)
             .map(|k| {
                 let guess = curve.decode((f64::from(k) - 0.5) / f64::from(top)) as f32;
                 last = first_bits(last, guess.to_bits(), |bits| level(curve, f32::from_bits(bits), top) >= k);
                 if last > f32::INFINITY.to_bits() { f32::NAN } else { f32::from_bits(last) }
             })
-            .collect();
+            .chain([f32::NAN]);
+        let thresholds: Vec<f32> = thresholds.collect();
         let cells = (f32::INFINITY.to_bits() >> SHIFT) + 2;
         let mut reached = 0;
         let start = (0..cells).map(|cell| {
@@ -49,6 +50,10 @@ impl Quantizer {
         if exposed > 0.0 {
             let cell = (exposed.to_bits() >> SHIFT) as usize;
             let (low, high) = (self.start[cell], self.start[cell + 1]);
+            if high - low <= 1 {
+                // The usual case of 256 levels, without a branch that cannot be predicted.
+                return low + u16::from(self.thresholds[low as usize] <= exposed);
+            }
             let within = &self.thresholds[low as usize..high as usize];
             return low + within.partition_point(|&t| t <= exposed) as u16;
         }
@@ -57,12 +62,21 @@ impl Quantizer {
 
     /// Appends 8-bit levels (for a quantizer of top level 255), three a pixel.
     pub fn append_bytes(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
-        bytes.extend(pixels.iter().flat_map(|p| p.to_array().map(|v| self.level(v) as u8)));
+        let start = bytes.len();
+        bytes.resize(start + pixels.len() * 3, 0);
+        for (target, pixel) in bytes[start..].chunks_exact_mut(3).zip(pixels) {
+            target.copy_from_slice(&pixel.to_array().map(|v| self.level(v) as u8));
+        }
     }
 
     /// Appends 16-bit levels, high byte first, three a pixel.
     pub fn append_words(&self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
-        bytes.extend(pixels.iter().flat_map(|p| p.to_array()).flat_map(|v| self.level(v).to_be_bytes()));
+        let start = bytes.len();
+        bytes.resize(start + pixels.len() * 6, 0);
+        for (target, pixel) in bytes[start..].chunks_exact_mut(6).zip(pixels) {
+            let [r, g, b] = pixel.to_array().map(|v| self.level(v).to_be_bytes());
+            target.copy_from_slice(&[r[0], r[1], g[0], g[1], b[0], b[1]]);
+        }
     }
 }
 

@@ -50,7 +50,7 @@ pub fn header(image: &Image) -> Header {
     Header::new(image.width(), image.height())
 }
 
-/// The file, `rows` rows at a time, to a place that can be seeked or to a pipe.
+/// The file, `rows` rows at a time, to a place that can go back or to a pipe.
 pub fn encode_by(format: Format, image: &Image, header: &Header, rows: usize, seekable: bool) -> Vec<u8> {
     let memory = Shared::default();
     let destination = match seekable {

@@ -40,7 +40,7 @@ impl Materials {
             MaterialRef::Name(_) => self.compiler.material("", material),
         };
         compiled.unwrap_or_else(|error| {
-            findings.extend(finding(&error, path));
+            findings.push(finding(&error, path));
             self.plain()
         })
     }
@@ -63,19 +63,15 @@ impl Materials {
     pub fn finish(self, findings: &mut Vec<Finding>) -> MaterialTable {
         self.compiler.finish().unwrap_or_else(|errors| {
             for (name, error) in errors {
-                findings.extend(finding(&error, &Path::root().key("materials").key(name)));
+                findings.push(finding(&error, &Path::root().key("materials").key(name)));
             }
             MaterialTable::default()
         })
     }
 }
 
-/// Names that nothing has are left to [`crate::check`], which knows what was probably meant.
-fn finding(error: &MaterialError, path: &Path) -> Option<Finding> {
-    match error {
-        MaterialError::UnknownMaterial { .. } | MaterialError::UnknownTexture(_) => None,
-        error => Some(Finding::error(error.to_string()).at(&path.join(&error.path()))),
-    }
+fn finding(error: &MaterialError, path: &Path) -> Finding {
+    Finding::error(error.to_string()).at(&path.join(&error.path()))
 }
 
 fn glows(material: &AnyMaterial) -> bool {

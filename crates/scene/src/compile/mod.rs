@@ -2,7 +2,7 @@
 
 use crate::description::{Description, Render};
 use crate::path::Path;
-use crate::report::Finding;
+use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::AnyCamera;
@@ -13,9 +13,12 @@ use juggler_tracer::world::{Object, World};
 mod count;
 mod defaults;
 mod materials;
+mod meshes;
 mod placing;
+mod settings;
 
 pub use count::MAX_OBJECTS;
+pub use meshes::{Files, Library};
 
 /// A scene ready to be rendered.
 pub struct Compiled {
@@ -25,6 +28,8 @@ pub struct Compiled {
     pub cameras: Vec<(String, AnyCamera)>,
     /// Size, samples, integrator and the like.
     pub settings: Render,
+    /// What people should know about the scene.
+    pub warnings: Problems,
 }
 
 /// Everything of a [`World`] but its hierarchy, which takes time to build.
@@ -43,11 +48,13 @@ pub struct Assembly {
 
 impl Assembly {
     /// Puts everything together; what cannot be is left out and reported.
-    pub fn of(scene: &Description) -> (Self, Vec<Finding>) {
+    pub fn of(scene: &Description, files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
+        settings::check(&scene.render, &mut findings);
+        settings::check_light(scene, &mut findings);
         let mut materials = materials::Materials::new(scene, &mut findings);
         let objects = match count::check(scene) {
-            Ok(()) => placing::place(scene, &mut materials, &mut findings),
+            Ok(()) => placing::place(scene, files, &mut materials, &mut findings),
             Err(problems) => {
                 findings.extend(problems);
                 Vec::new()
@@ -64,9 +71,9 @@ impl Assembly {
     }
 
     /// Builds the world.
-    pub fn compile(self, settings: Render) -> Compiled {
+    pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background);
-        Compiled { world, cameras: self.cameras, settings }
+        Compiled { world, cameras: self.cameras, settings, warnings }
     }
 }
 
@@ -80,7 +87,7 @@ fn bounds(objects: &[Object]) -> Aabb {
 /// The scene's cameras or the default one, each tried once; the chosen one first.
 fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> Vec<(String, AnyCamera)> {
     let [width, height] = scene.render.size;
-    let size = UVec2::new(width, height);
+    let size = UVec2::new(width.max(1), height.max(1));
     let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
     if let Some(camera) = &scene.camera {
         try_camera(camera, size, &Path::root().key("camera"), findings);
@@ -97,10 +104,14 @@ fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> V
     if cameras.is_empty() {
         cameras.push(("default".into(), defaults::camera(bounds, size)));
     }
-    let chosen = scene.render.camera.as_ref();
-    if let Some(at) = chosen.and_then(|chosen| cameras.iter().position(|(name, _)| *name == chosen.0)) {
-        let first = cameras.remove(at);
-        cameras.insert(0, first);
+    if let Some(chosen) = &scene.render.camera {
+        match cameras.iter().position(|(name, _)| *name == chosen.0) {
+            Some(at) => cameras[..=at].rotate_right(1),
+            None => {
+                let problem = Finding::error(format!("no camera is called `{}`", chosen.0));
+                findings.push(problem.at(&Path::root().key("render").key("camera")));
+            }
+        }
     }
     cameras
 }

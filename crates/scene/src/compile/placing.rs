@@ -1,6 +1,7 @@
 //! Objects in their places: groups expanded, transforms joined, materials inherited.
 
 use super::materials::Materials;
+use super::meshes::Files;
 use crate::description::{Bead, Description, Object, TransformStep};
 use crate::path::Path;
 use crate::report::Finding;
@@ -11,8 +12,13 @@ use juggler_tracer::world;
 use std::collections::BTreeMap;
 
 /// All objects of a scene that [`super::count::check`] found finite and small enough.
-pub fn place(scene: &Description, materials: &mut Materials, findings: &mut Vec<Finding>) -> Vec<world::Object> {
-    let mut preparing = Preparing { materials, findings };
+pub fn place(
+    scene: &Description,
+    files: Files<'_>,
+    materials: &mut Materials,
+    findings: &mut Vec<Finding>,
+) -> Vec<world::Object> {
+    let mut preparing = Preparing { files, materials, findings };
     let groups = Path::root().key("groups");
     let groups = scene
         .groups
@@ -40,6 +46,7 @@ enum Content<'s> {
 }
 
 struct Preparing<'m> {
+    files: Files<'m>,
     materials: &'m mut Materials,
     findings: &'m mut Vec<Finding>,
 }
@@ -79,7 +86,10 @@ impl Preparing<'_> {
     }
 
     fn shape(&mut self, shape: &AnyShape, path: &Path) -> Option<AnyShape> {
-        let mut shape = shape.clone();
+        let mut shape = match shape {
+            AnyShape::Mesh(mesh) => self.files.mesh(mesh, &path.key("mesh"), self.findings)?.into(),
+            shape => shape.clone(),
+        };
         match shape.prepare() {
             Ok(()) => Some(shape),
             Err(invalid) => {
@@ -92,7 +102,7 @@ impl Preparing<'_> {
     fn beads<'s>(&mut self, beads: impl IntoIterator<Item = Bead>, path: &Path) -> Content<'s> {
         let mut shapes = Vec::new();
         for Bead { center, radius } in beads {
-            let sphere = Sphere { radius, ..Sphere::default() };
+            let sphere = Sphere { radius };
             if let Some(shape) = self.shape(&sphere.into(), path) {
                 shapes.push((Transform::translation(center), shape));
             }

@@ -2,6 +2,7 @@
 //! from here and from the families of `juggler_tracer`.
 
 use indexmap::IndexMap;
+use juggler_imaging::Tone;
 use juggler_math::Rgb;
 use juggler_tracer::background::{AnyBackground, Solid};
 use juggler_tracer::camera::AnyCamera;
@@ -49,6 +50,9 @@ pub struct Description {
     /// How the picture is made.
     #[serde(default)]
     pub render: Render,
+    /// How linear light becomes the levels of a picture file.
+    #[serde(default)]
+    pub tone: Tone,
     /// The camera, when there is one. Without any, one is placed that sees all objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<AnyCamera>,
@@ -85,6 +89,7 @@ impl Default for Description {
             animation: Animation::default(),
             variables: IndexMap::new(),
             render: Render::default(),
+            tone: Tone::default(),
             camera: None,
             cameras: IndexMap::new(),
             background: None,

@@ -14,6 +14,13 @@ use serde::{Deserialize, Serialize};
 /// Something to be seen: exactly one of `shape`, `group`, `objects`, `chain` and `limb`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
+#[schemars(extend("oneOf" = [
+    {"required": ["shape"]},
+    {"required": ["group"]},
+    {"required": ["objects"]},
+    {"required": ["chain"]},
+    {"required": ["limb"]}
+]))]
 pub struct Object {
     /// A name for people.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -118,7 +118,7 @@ impl Limb {
         let (from, to) = (self.from.as_dvec3(), self.to.as_dvec3());
         let [a, b] = self.lengths.map(f64::from);
         let distance = (to - from).length();
-        if !(distance > 0.0) {
+        if distance.is_nan() || distance <= 0.0 {
             return Err("`from` and `to` must not be the same point".into());
         }
         if distance > (a + b) * (1.0 + 1e-6) {

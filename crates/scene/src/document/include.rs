@@ -8,7 +8,9 @@ use super::guard::Refused;
 use super::source::{FileId, Place, Sources};
 use super::tree::{Member, Node, Value};
 use super::{Unreadable, parse, read_text};
-use crate::report::Finding;
+use crate::report::{Finding, plain_io};
+use crate::schema::Schema;
+use crate::suggest::meant_or_all;
 use std::path::{Path, PathBuf};
 
 /// Named things: one of each name. Variables of included files come first, as later ones may use them.
@@ -28,13 +30,20 @@ pub struct Reader {
     seen: Vec<PathBuf>,
     /// The files that are being read, each included by the one before.
     open: Vec<PathBuf>,
+    complete: bool,
 }
 
 impl Reader {
     /// For the scene in this file.
     pub fn new(main: &Path) -> Self {
         let main = true_name(main);
-        Self { sources: Sources::default(), findings: Vec::new(), seen: vec![main.clone()], open: vec![main] }
+        Self {
+            sources: Sources::default(),
+            findings: Vec::new(),
+            seen: vec![main.clone()],
+            open: vec![main],
+            complete: true,
+        }
     }
 
     /// The merged tree of the main file, as far as there is one.
@@ -43,8 +52,10 @@ impl Reader {
     }
 
     /// What was read, and all that was wrong with it.
-    pub fn finish(self) -> (Sources, Vec<Finding>) {
-        (self.sources, self.findings)
+    ///
+    /// The last tells whether every file could be read; without one of them, names would be missing everywhere.
+    pub fn finish(self) -> (Sources, Vec<Finding>, bool) {
+        (self.sources, self.findings, self.complete)
     }
 
     fn file(&mut self, name: &str, text: String) -> Option<Node> {
@@ -54,12 +65,14 @@ impl Reader {
             Ok(tree) => tree,
             Err(refused) => {
                 self.findings.extend(refused.into_iter().map(|refused| finding(id, refused)));
+                self.complete = false;
                 return None;
             }
         };
         let Value::Object(members) = &mut tree.value else {
             let message = format!("a scene is an object `{{...}}`, this is {}", tree.kind());
             self.findings.push(Finding::error(message).on(tree.place));
+            self.complete = false;
             return None;
         };
         let Some(include) = members.shift_remove("include") else { return Some(tree) };
@@ -106,19 +119,11 @@ impl Reader {
         } else {
             None
         };
-        if let Some(message) = problem {
-            self.findings.push(Finding::error(message).on(place));
-            return None;
-        }
-        let text = match read_text(&path) {
+        let text = match problem.map_or_else(|| read_text(&path).map_err(|why| explain(&path, why)), Err) {
             Ok(text) => text,
-            Err(why) => {
-                let shown = path.display();
-                let message = match why {
-                    Unreadable::Io(error) => format!("cannot read `{shown}`: {}", crate::report::plain_io(&error)),
-                    Unreadable::NotText(message) => format!("cannot include `{shown}`: {message}"),
-                };
+            Err(message) => {
                 self.findings.push(Finding::error(message).on(place));
+                self.complete = false;
                 return None;
             }
         };
@@ -126,7 +131,24 @@ impl Reader {
         self.open.push(identity);
         let tree = self.file(&path.to_string_lossy(), text);
         self.open.pop();
+        tree.iter().for_each(|tree| self.check_keys(tree));
         tree
+    }
+
+    /// What is not merged must still be something that a scene file can hold.
+    fn check_keys(&mut self, tree: &Node) {
+        let known = Schema::get().root().get("properties").and_then(serde_json::Value::as_object);
+        let known: Vec<&str> = known.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
+        for (key, member) in tree.members().filter(|(key, _)| !known.contains(&key.as_str())) {
+            let finding = Finding::error(format!("`{key}` is not known here")).on(member.key_place);
+            self.findings.push(finding.maybe_help(meant_or_all(key, known.iter().copied())));
+        }
+        if let Some(version) =
+            tree.get("version").filter(|version| !matches!(&version.value, Value::Number(n) if n.as_f64() == Some(1.0)))
+        {
+            let message = "this program reads version 1 of the format, this file is of another";
+            self.findings.push(Finding::error(message).on(version.place));
+        }
     }
 
     fn merge(&mut self, into: &mut Node, from: Node) {
@@ -180,6 +202,14 @@ fn finding(file: FileId, refused: Refused) -> Finding {
     match refused.help {
         Some(help) => finding.help(help),
         None => finding,
+    }
+}
+
+fn explain(path: &Path, why: Unreadable) -> String {
+    let shown = path.display();
+    match why {
+        Unreadable::Io(error) => format!("cannot read `{shown}`: {}", plain_io(&error)),
+        Unreadable::NotText(message) => format!("cannot include `{shown}`: {message}"),
     }
 }
 

@@ -28,12 +28,14 @@ pub struct Document {
 impl Document {
     /// Reads a scene from a text and the files it includes; `name` is what messages call it, and the files it
     /// names are relative to that name's folder.
-    pub fn read(name: &str, text: String) -> Result<Self, (Sources, Vec<Finding>)> {
+    ///
+    /// Mistakes that leave everything in its place come with the document.
+    pub fn read(name: &str, text: String) -> Result<(Self, Vec<Finding>), (Sources, Vec<Finding>)> {
         let mut reader = include::Reader::new(Path::new(name));
         let tree = reader.main(name, text);
-        let (sources, findings) = reader.finish();
+        let (sources, findings, complete) = reader.finish();
         match tree {
-            Some(tree) if findings.is_empty() => Ok(Self { sources, tree }),
+            Some(tree) if complete => Ok((Self { sources, tree }, findings)),
             _ => Err((sources, findings)),
         }
     }

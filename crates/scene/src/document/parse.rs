@@ -6,6 +6,7 @@ use super::tree::{Member, Members, Node, Value};
 use jsonc_parser::ast;
 use jsonc_parser::errors::ParseErrorKind as Kind;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+use serde_json::Number;
 use std::ops::Range;
 
 /// The tree of a text, or its mistakes: the first of syntax, or every duplicate key and unreadable number.
@@ -77,6 +78,17 @@ fn on_characters(text: &str, range: Range<usize>) -> Range<usize> {
     start..text.ceil_char_boundary(range.end.clamp(start, text.len()))
 }
 
+/// The nearest number that 64 bits can hold.
+fn exact(text: &str) -> Option<Number> {
+    if let Ok(whole) = text.parse::<i64>() {
+        return Some(whole.into());
+    }
+    if let Ok(whole) = text.parse::<u64>() {
+        return Some(whole.into());
+    }
+    Number::from_f64(text.parse().ok()?)
+}
+
 struct Reader {
     file: FileId,
     refused: Vec<Refused>,
@@ -107,9 +119,9 @@ impl Reader {
     }
 
     fn number(&mut self, literal: &ast::NumberLit<'_>) -> Value {
-        match literal.value.parse::<serde_json::Number>() {
-            Ok(number) => Value::Number(number),
-            Err(_) => {
+        match exact(literal.value) {
+            Some(number) => Value::Number(number),
+            None => {
                 self.refuse(literal.range, format!("`{}` is not a number that a computer can hold", literal.value));
                 Value::Null
             }

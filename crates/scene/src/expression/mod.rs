@@ -145,6 +145,6 @@ mod tests {
         for hostile in ["(".repeat(4000), "-".repeat(4000), "1^".repeat(2000), "sin(".repeat(1000), "1".repeat(5000)] {
             assert!(evaluate(&hostile, &Names::new()).is_err());
         }
-        assert_eq!(value(&"1+".repeat(2000).trim_end_matches('+')), 2000.0);
+        assert_eq!(value("1+".repeat(2000).trim_end_matches('+')), 2000.0);
     }
 }

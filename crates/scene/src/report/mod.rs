@@ -2,6 +2,7 @@
 
 use crate::document::{Node, Place, Sources, parse};
 use crate::path::Path;
+use std::collections::BTreeSet;
 use std::{fmt, io};
 
 mod text;
@@ -64,6 +65,13 @@ impl Finding {
         self
     }
 
+    /// Whether both are about the same value, or one about a part of the other's.
+    pub fn covers(&self, other: &Self) -> bool {
+        let (Some(a), Some(b)) = (&self.path, &other.path) else { return false };
+        let shared = a.steps().len().min(b.steps().len());
+        shared > 0 && a.steps().iter().zip(b.steps()).all(|(a, b)| a == b)
+    }
+
     /// Whether there is no picture.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
@@ -103,7 +111,9 @@ impl Problems {
             list.push(Problem { severity, path, place, message, help });
         }
         list.sort_by_key(|problem| (problem.severity, problem.place));
-        list.dedup();
+        // Two steps may notice the same; the first knows better what was meant.
+        let mut seen = BTreeSet::new();
+        list.retain(|problem| seen.insert((problem.path.clone(), problem.message.clone())));
         Self { list, sources }
     }
 

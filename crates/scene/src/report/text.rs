@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 /// Most problems that are written out in full.
 const MAX_SHOWN: usize = 50;
-/// Widest excerpt of a line, in bytes on each side of the fault.
-const MARGIN: usize = 100;
+/// Widest excerpt of a line, in bytes on each side of the fault; what a terminal shows is less.
+const MARGIN: usize = 500;
 
 /// All problems, with a line that counts them when there are several.
 pub fn render(problems: &Problems, color: bool) -> String {
@@ -43,9 +43,15 @@ fn group<'p>(problem: &'p Problem, sources: &'p Sources) -> Group<'p> {
     };
     let mut elements: Vec<Element<'p>> = Vec::new();
     if let Some(excerpt) = problem.place.and_then(|place| Excerpt::of(place, sources)) {
-        elements.push(Origin::path(excerpt.file).line(excerpt.line).char_column(excerpt.column).into());
         let annotation = AnnotationKind::Primary.span(excerpt.start..excerpt.end);
-        elements.push(Snippet::source(excerpt.text).line_start(excerpt.line).annotation(annotation).into());
+        let snippet = Snippet::source(excerpt.text).line_start(excerpt.line).annotation(annotation);
+        if excerpt.cut {
+            // The column in the file is not that in the excerpt.
+            elements.push(Origin::path(excerpt.file).line(excerpt.line).char_column(excerpt.column).into());
+            elements.push(snippet.into());
+        } else {
+            elements.push(snippet.path(excerpt.file).into());
+        }
     }
     if !problem.path.is_empty() {
         elements.push(Level::NOTE.with_name("at").message(problem.path.as_str()).into());
@@ -64,6 +70,8 @@ struct Excerpt<'p> {
     /// In characters, counted from 1.
     column: usize,
     text: String,
+    /// Whether the beginning of the line is missing.
+    cut: bool,
     /// Bytes of `text` at fault.
     start: usize,
     end: usize,
@@ -82,11 +90,12 @@ impl<'p> Excerpt<'p> {
         let fault = right.floor_char_boundary(((place.end - place.start) as usize).clamp(0, MARGIN));
         let shown_left = left.get(left.ceil_char_boundary(left.len().saturating_sub(MARGIN))..)?;
         let shown_right = right.get(..right.floor_char_boundary((fault + MARGIN).min(right.len())))?;
-        let cut = if shown_left.len() < left.len() { "…" } else { "" };
+        let cut = shown_left.len() < left.len();
+        let head = if cut { "…" } else { "" };
         let tail = if shown_right.len() < right.len() { "…" } else { "" };
-        let text = format!("{cut}{shown_left}{shown_right}{tail}");
-        let start = cut.len() + shown_left.len();
-        Some(Self { file: &source.name, line, column, text, start, end: start + fault.min(shown_right.len()) })
+        let text = format!("{head}{shown_left}{shown_right}{tail}");
+        let start = head.len() + shown_left.len();
+        Some(Self { file: &source.name, line, column, text, cut, start, end: start + fault.min(shown_right.len()) })
     }
 }
 

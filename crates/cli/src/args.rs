@@ -1,0 +1,107 @@
+//! What was typed. What it means is worked out in [`crate::plan`].
+
+use crate::command::Command;
+use crate::progress::Progress;
+use crate::value::{self, FrameRange};
+use clap::{Args as Arguments, Parser};
+use juggler::tracer::render::Rect;
+
+/// A ray tracer whose pictures are the same to the bit everywhere.
+#[derive(Debug, Parser)]
+#[command(name = "juggler", version, propagate_version = true, max_term_width = 100)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Flags of `juggler render`.
+#[derive(Clone, Debug, Default, Arguments)]
+pub struct RenderArgs {
+    /// A scene file, or the name of a built-in scene (see `juggler scenes`)
+    pub scene: String,
+
+    /// Where the picture goes; the ending says the format, `-` is standard output [default: the scene's name.png]
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    pub output: Option<String>,
+
+    /// The file format, instead of the one that the ending says
+    #[arg(long, value_name = "FORMAT", help_heading = "Output")]
+    pub format: Option<String>,
+
+    /// Bits of a channel: 8 or 16 in a PNG, 16 or 32 in an EXR
+    #[arg(long, value_name = "N", help_heading = "Output")]
+    pub bits: Option<u8>,
+
+    /// Quality of a JPEG
+    #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100), help_heading = "Output")]
+    pub quality: Option<u8>,
+
+    /// How light becomes the picture's colours
+    #[arg(long, value_name = "CURVE", help_heading = "Output")]
+    pub tone: Option<String>,
+
+    /// Stops by which the picture is brightened
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, help_heading = "Output")]
+    pub exposure: Option<f32>,
+
+    /// Writes counts, times and the hash of the pixels as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub stats: Option<String>,
+
+    /// Shows how far it is, on standard error
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub progress: Progress,
+
+    /// Says nothing but errors
+    #[arg(short, long, conflicts_with = "progress", help_heading = "Output")]
+    pub quiet: bool,
+
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = value::size, help_heading = "Picture")]
+    pub size: Option<[u32; 2]>,
+
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216), help_heading = "Picture")]
+    pub samples: Option<u32>,
+
+    /// How light is followed
+    #[arg(long, value_name = "NAME", help_heading = "Picture")]
+    pub integrator: Option<String>,
+
+    /// How often a path may be mirrored or refracted
+    #[arg(long, value_name = "N", help_heading = "Picture")]
+    pub max_depth: Option<u32>,
+
+    /// One of the scene's cameras
+    #[arg(long, value_name = "NAME", help_heading = "Picture")]
+    pub camera: Option<String>,
+
+    /// One frame of an animation
+    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "at"], help_heading = "Picture")]
+    pub frame: Option<u32>,
+
+    /// Frames A up to, but without, B, as many pictures: `####` in the output's name becomes the number
+    #[arg(long, value_name = "A..B", value_parser = value::frames, conflicts_with = "at", help_heading = "Picture")]
+    pub frames: Option<FrameRange>,
+
+    /// A moment of an animation
+    #[arg(long, value_name = "SECONDS", value_parser = value::seconds, help_heading = "Picture")]
+    pub at: Option<f64>,
+
+    /// A part of the picture
+    #[arg(long, value_name = "X,Y,W,H", value_parser = value::crop, help_heading = "Picture")]
+    pub crop: Option<Rect>,
+
+    /// Another seed, another noise
+    #[arg(long, value_name = "N", help_heading = "Picture")]
+    pub seed: Option<u64>,
+
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Machine")]
+    pub threads: Option<u16>,
+
+    /// Refuses to render what needs more memory
+    #[arg(long, value_name = "SIZE", value_parser = value::memory, help_heading = "Machine")]
+    pub max_memory: Option<u64>,
+}

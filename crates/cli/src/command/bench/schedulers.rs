@@ -1,0 +1,167 @@
+//! `juggler bench schedulers`: how pixels are handed out to threads, on scenes whose work is spread unevenly over
+//! the picture. All ways give the same picture; the bench checks that too.
+
+use crate::console;
+use crate::failure::Failure;
+use crate::source;
+use crate::value;
+use clap::Args;
+use juggler::math::{Rgb, vec3};
+use juggler::scene::{Object, Scene};
+use juggler::tracer::camera::Perspective;
+use juggler::tracer::light::Point;
+use juggler::tracer::material::Phong;
+use juggler::tracer::render::{Control, Scheduler};
+use juggler::tracer::shape::Sphere;
+use juggler::{Error, Picture, Settings};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::time::Instant;
+
+/// The ways, with their names in the table.
+const WAYS: [(Scheduler, &str); 3] =
+    [(Scheduler::StaticRows, "row blocks"), (Scheduler::RowQueue, "row queue"), (Scheduler::WorkStealing, "stealing")];
+/// Width of a column of the table.
+const COLUMN: usize = 12;
+
+/// Flags of `juggler bench schedulers`.
+#[derive(Debug, Args)]
+pub struct Schedulers {
+    /// Scenes to render [default: a heap of mirrors in a corner, and the same at the bottom]
+    scenes: Vec<String>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = value::size, default_value = "640x360")]
+    size: [u32; 2],
+    /// Samples per pixel
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    samples: u32,
+    /// How often each is measured; the median counts
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeats: u32,
+    /// Threads to compare with one [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// All measurements of one scene on one number of threads.
+struct Row {
+    scene: String,
+    threads: usize,
+    /// Seconds, for each of [`WAYS`].
+    seconds: [Vec<f64>; WAYS.len()],
+}
+
+impl Schedulers {
+    /// Measures in turns, so that what disturbs the machine disturbs all alike, and prints the medians.
+    pub fn run(self) -> Result<(), Failure> {
+        let settings = Settings { size: Some(self.size), samples: Some(self.samples), ..Settings::default() };
+        let pictures = self.scenes()?.into_iter().map(|(name, scene)| Ok((name, Picture::new(&scene, &settings)?)));
+        let pictures: Vec<(String, Picture)> = pictures.collect::<Result<_, Failure>>()?;
+        let pools = self.pools()?;
+        let mut rows: Vec<(Row, &ThreadPool, &Picture)> = Vec::new();
+        for (name, picture) in &pictures {
+            for pool in &pools {
+                let seconds = std::array::from_fn(|_| Vec::new());
+                let row = Row { scene: name.clone(), threads: pool.current_num_threads(), seconds };
+                rows.push((row, pool, picture));
+            }
+        }
+        for _ in 0..self.repeats {
+            for (row, pool, picture) in &mut rows {
+                row.measure(pool, picture)?;
+            }
+        }
+        let table: Vec<String> = rows.iter().map(|(row, ..)| row.to_words()).collect();
+        console::print(&format!("{}\n{}", head(), table.join("\n")))
+    }
+
+    fn scenes(&self) -> Result<Vec<(String, Scene)>, Failure> {
+        if self.scenes.is_empty() {
+            return Ok(vec![("corner".into(), mirrors(6.0, -3.0)), ("bottom".into(), mirrors(0.0, -5.0))]);
+        }
+        self.scenes.iter().map(|name| Ok((source::stem(name).to_owned(), source::load(name)?))).collect()
+    }
+
+    fn pools(&self) -> Result<Vec<ThreadPool>, Failure> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let most = self.threads.map_or(cores, usize::from);
+        let counts = if most > 1 { vec![1, most] } else { vec![1] };
+        let build = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
+        let pools: Result<_, _> = counts.into_iter().map(build).collect();
+        pools.map_err(|error| Failure::System(format!("cannot start threads: {error}")))
+    }
+}
+
+impl Row {
+    fn measure(&mut self, pool: &ThreadPool, picture: &Picture) -> Result<(), Failure> {
+        let mut hashes = Vec::new();
+        for ((way, _), seconds) in WAYS.iter().zip(&mut self.seconds) {
+            let start = Instant::now();
+            let film = pool.install(|| picture.render(*way, &Control::default(), |_| Ok::<(), Error>(())))?;
+            seconds.push(start.elapsed().as_secs_f64());
+            hashes.push(film.hash);
+        }
+        hashes.dedup();
+        if hashes.len() > 1 {
+            return Err(Failure::System("schedulers gave different pictures: this is a bug of Juggler".into()));
+        }
+        Ok(())
+    }
+
+    fn to_words(&self) -> String {
+        let medians: Vec<f64> = self.seconds.iter().map(|seconds| median(seconds)).collect();
+        let blocks = medians.first().copied().unwrap_or_default();
+        let mut line = format!("{:COLUMN$}{:>COLUMN$}", self.scene, self.threads);
+        for median in medians {
+            line.push_str(&format!(
+                "{:>COLUMN$}{:>8}",
+                format!("{:.1} ms", median * 1e3),
+                format!("{:.2}x", blocks / median)
+            ));
+        }
+        line
+    }
+}
+
+fn head() -> String {
+    let ways: String = WAYS.iter().map(|(_, name)| format!("{name:>COLUMN$}{:>8}", "speed")).collect();
+    format!("{:COLUMN$}{:>COLUMN$}{ways}", "scene", "threads")
+}
+
+/// The middle of the values; 0 when there are none.
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+}
+
+/// A heap of mirror balls around (x, y) in front of an empty sky: few pixels have nearly all of the work.
+fn mirrors(x: f32, y: f32) -> Scene {
+    let mirror = Phong { diffuse: Rgb::splat(0.1).into(), reflection: Rgb::splat(0.85).into(), ..Phong::default() };
+    let eye = vec3(0.0, 0.0, 20.0);
+    let scene = Scene::new()
+        .camera("main", Perspective { eye, look_at: Some(vec3(0.0, 0.0, 0.0)), ..Perspective::default() })
+        .background(Rgb::new(0.3, 0.5, 0.9))
+        .light(Point { position: eye, intensity: 400.0, ..Point::default() });
+    (0..125_u8).fold(scene, |scene, i| {
+        let [right, up, back] = [i % 5, i / 5 % 5, i / 25].map(|step| f32::from(step) - 2.0);
+        let ball = Object::new(Sphere { radius: 0.49 });
+        scene.add(ball.at(x + right, y + up * 0.5, back).material(mirror.clone()))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[5.0]), median(&[])), (2.0, 5.0, 0.0));
+    }
+
+    #[test]
+    fn head_and_rows_line_up() {
+        let row = Row { scene: "a".into(), threads: 8, seconds: [vec![1.0], vec![0.5], vec![0.25]] };
+        assert_eq!(row.to_words().len(), head().len());
+        assert!(row.to_words().contains("2.00x") && row.to_words().contains("4.00x"));
+    }
+}

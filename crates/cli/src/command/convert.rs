@@ -1,0 +1,34 @@
+//! `juggler convert`: any readable scene as scene JSON, expressions resolved.
+
+use crate::console;
+use crate::failure::Failure;
+use crate::output::STANDARD_OUTPUT;
+use crate::source;
+use clap::Args;
+use juggler::imaging::atomic;
+use std::path::Path;
+
+/// Flags of `juggler convert`.
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// A scene file, or the name of a built-in scene
+    scene: String,
+    /// The file to write, `-` for standard output
+    output: String,
+    /// The frame at which expressions are worked out
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    frame: u32,
+}
+
+impl Convert {
+    /// Writes the scene.
+    pub fn run(self) -> Result<(), Failure> {
+        let scene = source::load(&self.scene)?.at_frame(f64::from(self.frame))?;
+        let json = scene.to_json();
+        if self.output == STANDARD_OUTPUT {
+            return console::print(&json);
+        }
+        let written = atomic::write(Path::new(&self.output), format!("{json}\n").as_bytes());
+        written.map_err(|error| Failure::file("write", &self.output, &error))
+    }
+}

@@ -1,0 +1,97 @@
+//! `juggler info`: what is in a scene.
+
+use crate::console;
+use crate::failure::Failure;
+use crate::format::{bytes, counted};
+use crate::source;
+use clap::Args;
+use juggler::math::Aabb;
+use juggler::scene::{Compiled, Scene};
+use serde_json::json;
+
+/// Flags of `juggler info`.
+#[derive(Debug, Args)]
+pub struct Info {
+    /// A scene file, or the name of a built-in scene
+    scene: String,
+    /// As one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+impl Info {
+    /// Builds the world and prints what is in it.
+    pub fn run(self) -> Result<(), Failure> {
+        let scene = source::load(&self.scene)?;
+        let compiled = scene.compile()?;
+        if self.json {
+            return console::print(&to_json(&self.scene, &scene, &compiled));
+        }
+        console::print(&to_words(&self.scene, &scene, &compiled))
+    }
+}
+
+fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
+    let geometry = compiled.world.geometry();
+    let settings = &compiled.settings;
+    let description = &scene.description;
+    let title = if description.title.is_empty() { name } else { &description.title };
+    let cameras: Vec<&str> = compiled.cameras.iter().map(|(name, _)| name.as_str()).collect();
+    let [width, height] = settings.size;
+    let mut lines = vec![title.to_owned()];
+    if !description.description.is_empty() {
+        lines.push(description.description.clone());
+    }
+    let mut row = |key: &str, value: String| lines.push(format!("{key:12}{value}"));
+    row("picture", format!("{width}x{height}, {}", counted(settings.samples.into(), "sample")));
+    row("integrator", settings.integrator.name().into());
+    row("shapes", geometry.shapes.to_string());
+    row("triangles", geometry.triangles.to_string());
+    row("lights", geometry.lights.to_string());
+    row("materials", description.materials.len().to_string());
+    row("textures", description.textures.len().to_string());
+    row("cameras", cameras.join(", "));
+    row("bounds", bounds_in_words(&compiled.world.bounds()));
+    row(
+        "memory",
+        format!("{} shapes, {} tree", bytes(geometry.geometry_bytes as u64), bytes(geometry.bvh_bytes as u64)),
+    );
+    let animation = &description.animation;
+    let seconds = f64::from(animation.frames) / animation.frames_per_second;
+    row("animation", format!("{}, {seconds} s", counted(animation.frames.into(), "frame")));
+    lines.join("\n")
+}
+
+fn bounds_in_words(bounds: &Aabb) -> String {
+    match corners(bounds) {
+        Some([min, max]) => format!("[{}, {}, {}] to [{}, {}, {}]", min[0], min[1], min[2], max[0], max[1], max[2]),
+        None => "nothing bounded".into(),
+    }
+}
+
+fn corners(bounds: &Aabb) -> Option<[[f32; 3]; 2]> {
+    bounds.is_finite().then(|| [bounds.min.to_array(), bounds.max.to_array()])
+}
+
+fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
+    let geometry = compiled.world.geometry();
+    let settings = &compiled.settings;
+    let description = &scene.description;
+    json!({
+        "version": 1,
+        "scene": name,
+        "title": description.title,
+        "description": description.description,
+        "size": settings.size,
+        "samples": settings.samples,
+        "integrator": settings.integrator.name(),
+        "geometry": {"shapes": geometry.shapes, "triangles": geometry.triangles, "instances": 0, "lights": geometry.lights},
+        "materials": description.materials.len(),
+        "textures": description.textures.len(),
+        "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        "bounds": corners(&compiled.world.bounds()),
+        "memory": {"geometry_bytes": geometry.geometry_bytes, "bvh_bytes": geometry.bvh_bytes},
+        "animation": {"frames": description.animation.frames, "frames_per_second": description.animation.frames_per_second},
+    })
+    .to_string()
+}

@@ -1,0 +1,51 @@
+//! The commands: one file each, with its flags and what it does.
+
+use crate::failure::Failure;
+use clap::Subcommand;
+
+mod bench;
+mod check;
+mod compare;
+mod convert;
+mod info;
+mod render;
+mod scenes;
+mod schema;
+
+/// Every command.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Renders a picture, or the pictures of an animation
+    #[command(after_help = render::EXAMPLES)]
+    Render(Box<crate::args::RenderArgs>),
+    /// Says all that is wrong with a scene, without rendering it
+    Check(check::Check),
+    /// Says what is in a scene
+    Info(info::Info),
+    /// Writes the JSON Schema of the scene format
+    Schema,
+    /// Writes any readable scene as scene JSON
+    Convert(convert::Convert),
+    /// Says how different two pictures are
+    Compare(compare::Compare),
+    /// Lists the built-in scenes
+    Scenes,
+    /// Measures this machine
+    Bench(bench::Bench),
+}
+
+impl Command {
+    /// Does it.
+    pub fn run(self) -> Result<(), Failure> {
+        match self {
+            Self::Render(args) => render::run(*args),
+            Self::Check(check) => check.run(),
+            Self::Info(info) => info.run(),
+            Self::Schema => schema::run(),
+            Self::Convert(convert) => convert.run(),
+            Self::Compare(compare) => compare.run(),
+            Self::Scenes => scenes::run(),
+            Self::Bench(bench) => bench.run(),
+        }
+    }
+}

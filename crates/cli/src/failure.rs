@@ -1,0 +1,102 @@
+//! Why the program stops short, and the exit status that says so.
+
+use juggler::Error;
+use juggler::imaging::ImageError;
+use juggler::scene::{Problems, SceneError};
+use std::fmt::Display;
+use std::process::ExitCode;
+
+/// Why the program stops short.
+#[derive(Debug)]
+pub enum Failure {
+    /// A check or comparison says no; the answer has been given already.
+    No,
+    /// A comparison says no, for this reason.
+    Different(String),
+    /// The command line or the scene asks for what cannot be.
+    Wrong(String),
+    /// The scene has mistakes.
+    Scene(Box<Problems>),
+    /// A file or the system failed.
+    System(String),
+    /// A signal came, by its number.
+    Interrupted(u8),
+}
+
+impl Failure {
+    /// What scripts see.
+    pub fn status(&self) -> u8 {
+        match self {
+            Self::No | Self::Different(_) => 1,
+            Self::Wrong(_) | Self::Scene(_) => 2,
+            Self::System(_) => 3,
+            Self::Interrupted(signal) => 128_u8.saturating_add(*signal),
+        }
+    }
+
+    /// What people see.
+    pub fn message(&self, color: bool) -> Option<String> {
+        let label = if color { "\x1b[1;31merror\x1b[0m" } else { "error" };
+        match self {
+            Self::No => None,
+            Self::Different(message) => Some(message.clone()),
+            Self::Wrong(message) | Self::System(message) => Some(format!("{label}: {message}")),
+            Self::Scene(problems) => Some(problems.render(color)),
+            Self::Interrupted(_) => Some("interrupted".into()),
+        }
+    }
+
+    /// A file that could not be read or written.
+    pub fn file(what: &str, name: impl Display, error: &std::io::Error) -> Self {
+        Self::System(format!("cannot {what} `{name}`: {}", plain(error)))
+    }
+}
+
+impl From<Failure> for ExitCode {
+    fn from(failure: Failure) -> Self {
+        Self::from(failure.status())
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        match error {
+            SceneError::Problems(problems) => Self::Scene(Box::new(problems)),
+            SceneError::Read { .. } => Self::System(error.to_string()),
+            SceneError::NotText { .. } | SceneError::UnknownBuiltIn { .. } => Self::Wrong(error.to_string()),
+        }
+    }
+}
+
+impl From<ImageError> for Failure {
+    fn from(error: ImageError) -> Self {
+        let message = error.to_string();
+        match error {
+            ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } => Self::Wrong(message),
+            ImageError::SizesDiffer { .. } => Self::Different(message),
+            _ => Self::System(message),
+        }
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Scene(error) => error.into(),
+            Error::Settings(message) => Self::Wrong(message),
+            Error::Image(error) => error.into(),
+            Error::Stopped(stopped) => Self::System(stopped.to_string()),
+        }
+    }
+}
+
+/// The system's error in plain words.
+pub fn plain(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file or folder".into(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".into(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".into(),
+        std::io::ErrorKind::BrokenPipe => "nobody reads it any more".into(),
+        _ => error.to_string(),
+    }
+}

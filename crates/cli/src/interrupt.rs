@@ -1,0 +1,33 @@
+//! Signals that ask the program to stop: remembered, so that the render can end in order.
+
+use crate::failure::{Failure, plain};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+
+/// The signals that came.
+pub struct Interrupts {
+    number: Arc<AtomicUsize>,
+}
+
+impl Interrupts {
+    /// From now on SIGINT and SIGTERM are remembered; a second one ends the program at once.
+    pub fn watch() -> Result<Self, Failure> {
+        let number = Arc::new(AtomicUsize::new(0));
+        let again = Arc::new(AtomicBool::new(false));
+        for signal in [SIGINT, SIGTERM] {
+            flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))
+                .and_then(|_| flag::register(signal, Arc::clone(&again)))
+                .and_then(|_| flag::register_usize(signal, Arc::clone(&number), signal.unsigned_abs() as usize))
+                .map_err(|error| Failure::System(format!("cannot watch for signals: {}", plain(&error))))?;
+        }
+        Ok(Self { number })
+    }
+
+    /// The signal that came, as a failure.
+    pub fn caught(&self) -> Option<Failure> {
+        let number = self.number.load(Relaxed);
+        (number != 0).then(|| Failure::Interrupted(u8::try_from(number).unwrap_or(u8::MAX)))
+    }
+}

@@ -1,0 +1,123 @@
+//! `--stats`: one JSON object about a render, with the keys that other people's scripts read.
+
+use juggler::tracer::render::Rays;
+use juggler::{Outcome, Picture};
+use serde::Serialize;
+
+/// All of it.
+#[derive(Debug, Serialize)]
+pub struct Stats<'s> {
+    version: u32,
+    scene: &'s str,
+    size: [u32; 2],
+    samples: u32,
+    threads: usize,
+    integrator: &'s str,
+    seconds: Seconds,
+    rays: RayCounts,
+    geometry: Geometry,
+    memory: Memory,
+    film: Film<'s>,
+    fingerprint: &'s str,
+}
+
+/// How long each part took.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Seconds {
+    /// Reading files.
+    pub load: f64,
+    /// Building the world.
+    pub build: f64,
+    /// Tracing rays.
+    pub render: f64,
+    /// Removing noise.
+    pub denoise: f64,
+    /// Encoding and writing the picture.
+    pub write: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct RayCounts {
+    camera: u64,
+    shadow: u64,
+    secondary: u64,
+    total: u64,
+    per_second: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Geometry {
+    shapes: usize,
+    triangles: usize,
+    instances: usize,
+    lights: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct Film<'s> {
+    mean: [f64; 3],
+    hash: &'s str,
+}
+
+#[derive(Debug, Serialize)]
+struct Memory {
+    peak_rss_bytes: Option<u64>,
+    geometry_bytes: usize,
+    bvh_bytes: usize,
+}
+
+impl<'s> Stats<'s> {
+    /// Of a finished picture.
+    pub fn new(scene: &'s str, picture: &'s Picture, threads: usize, seconds: Seconds, outcome: &'s Outcome) -> Self {
+        let Outcome { rays, film, .. } = outcome;
+        let geometry = picture.world().geometry();
+        Self {
+            version: 1,
+            scene,
+            size: picture.size(),
+            samples: picture.samples(),
+            threads,
+            integrator: picture.compiled().settings.integrator.name(),
+            seconds,
+            rays: RayCounts {
+                camera: rays.camera,
+                shadow: rays.shadow,
+                secondary: rays.secondary,
+                total: rays.total(),
+                per_second: rays_per_second(rays, seconds.render),
+            },
+            geometry: Geometry {
+                shapes: geometry.shapes,
+                triangles: geometry.triangles,
+                instances: 0,
+                lights: geometry.lights,
+            },
+            memory: Memory {
+                peak_rss_bytes: peak_rss_bytes(),
+                geometry_bytes: geometry.geometry_bytes,
+                bvh_bytes: geometry.bvh_bytes,
+            },
+            film: Film { mean: film.mean, hash: &film.hash },
+            fingerprint: picture.fingerprint(),
+        }
+    }
+
+    /// The object on one line.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+/// Rays a second of rendering.
+pub fn rays_per_second(rays: &Rays, seconds: f64) -> f64 {
+    rays.total() as f64 / seconds.max(1e-9)
+}
+
+/// The most memory that the process ever held, where the system says so.
+fn peak_rss_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}

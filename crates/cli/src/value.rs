@@ -1,0 +1,143 @@
+//! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
+
+use juggler::tracer::render::Rect;
+
+/// Largest width and height.
+const MAX_EDGE: u32 = 65_536;
+
+/// `640x360`: width and height in pixels.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || "a size is WIDTHxHEIGHT, such as 640x360".to_owned();
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+    let edge = |text: &str| match text.parse::<u32>() {
+        Ok(edge @ 1..=MAX_EDGE) => Ok(edge),
+        Ok(_) => Err(format!("width and height are 1 to {MAX_EDGE} pixels")),
+        Err(_) if !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit()) => {
+            Err(format!("width and height are 1 to {MAX_EDGE} pixels"))
+        }
+        Err(_) => Err(wrong()),
+    };
+    Ok([edge(width)?, edge(height)?])
+}
+
+/// `10,20,320,200`: left, top, width and height in pixels.
+pub fn crop(text: &str) -> Result<Rect, String> {
+    let numbers: Result<Vec<u32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok([_, _, 0, _] | [_, _, _, 0]) => Err("width and height of a crop are at least 1".into()),
+        Ok([x, y, width, height]) => Ok(Rect { x: *x, y: *y, width: *width, height: *height }),
+        _ => Err("a crop is LEFT,TOP,WIDTH,HEIGHT in pixels, such as 100,50,320,200".into()),
+    }
+}
+
+/// Frames from the first up to, but without, the end; an end that is not given is the scene's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    /// First frame.
+    pub first: u32,
+    /// The frame after the last.
+    pub end: Option<u32>,
+}
+
+/// `0..30`, `10..`, `..`: frames, without the last.
+pub fn frames(text: &str) -> Result<FrameRange, String> {
+    let wrong = || "a range of frames is FIRST..END without the end, such as 0..30".to_owned();
+    let (first, end) = text.split_once("..").ok_or_else(wrong)?;
+    let number = |text: &str| match text {
+        "" => Ok(None),
+        text => text.parse::<u32>().map(Some).map_err(|_| wrong()),
+    };
+    let (first, end) = (number(first)?.unwrap_or(0), number(end)?);
+    match end {
+        Some(end) if end <= first => {
+            Err(format!("no frame is in {first}..{end}: a range ends before its second number"))
+        }
+        _ => Ok(FrameRange { first, end }),
+    }
+}
+
+/// `512M`, `4G`, `1.5GiB`, `100000`: bytes; K, M, G, T are powers of 1024.
+pub fn memory(text: &str) -> Result<u64, String> {
+    let wrong = || "an amount of memory is a number with K, M, G or T, such as 512M or 4G".to_owned();
+    let lower = text.to_ascii_lowercase();
+    let unit = lower.trim_end_matches("ib").trim_end_matches('b');
+    let (number, power) = match unit.strip_suffix(['k', 'm', 'g', 't']) {
+        Some(number) => (number, 1 + "kmgt".find(&unit[number.len()..]).unwrap_or(0)),
+        None => (unit, 0),
+    };
+    let number: f64 = number.trim().parse().map_err(|_| wrong())?;
+    let bytes = number * 1024_f64.powi(power as i32);
+    if bytes >= 1.0 && bytes < u64::MAX as f64 { Ok(bytes as u64) } else { Err(wrong()) }
+}
+
+/// A finite number of seconds, not before the start.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
+        _ => Err("a time is a number of seconds from 0 on, such as 1.5".into()),
+    }
+}
+
+/// A number that a difference may reach.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(tolerance) if tolerance >= 0.0 => Ok(tolerance),
+        _ => Err("a tolerance is a number from 0 on, such as 0.001".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("640x360"), Ok([640, 360]));
+        assert_eq!(size("1X65536"), Ok([1, 65_536]));
+        for wrong in ["", "640", "640x", "x360", "640x360x2", "-1x5", "6.5x2", "640 x 360"] {
+            assert!(size(wrong).is_err_and(|e| e.contains("such as 640x360")), "{wrong}");
+        }
+        for wrong in ["0x5", "5x0", "65537x1", "99999999999x1"] {
+            assert!(size(wrong).is_err_and(|e| e.contains("1 to 65536")), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn crops() {
+        assert_eq!(crop("1,2,3,4"), Ok(Rect { x: 1, y: 2, width: 3, height: 4 }));
+        for wrong in ["", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "1,2,0,4", "1,2,3,0", "a,b,c,d"] {
+            assert!(crop(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn ranges_leave_out_their_end() {
+        assert_eq!(frames("0..30"), Ok(FrameRange { first: 0, end: Some(30) }));
+        assert_eq!(frames("5.."), Ok(FrameRange { first: 5, end: None }));
+        assert_eq!(frames(".."), Ok(FrameRange { first: 0, end: None }));
+        for wrong in ["", "5", "5..5", "6..5", "a..b", "1...3", "-1..4"] {
+            assert!(frames(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn amounts_of_memory() {
+        let known =
+            [("1", 1), ("512M", 512 << 20), ("4g", 4 << 30), ("1.5GiB", 3 << 29), ("2KB", 2048), ("1T", 1 << 40)];
+        for (text, bytes) in known {
+            assert_eq!(memory(text), Ok(bytes), "{text}");
+        }
+        for wrong in ["", "G", "-1G", "0", "nan", "inf", "4X", "1e30T", "ib", "bb"] {
+            assert!(memory(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn times_and_tolerances() {
+        assert_eq!(seconds("1.5"), Ok(1.5));
+        assert_eq!(tolerance("0"), Ok(0.0));
+        for wrong in ["", "-1", "nan", "x"] {
+            assert!(seconds(wrong).is_err() && tolerance(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Commands that answer: help, lists, checks, comparisons.
+
+use crate::harness::Folder;
+use std::fs;
+use std::process::Stdio;
+
+#[test]
+fn help_tells_everything() {
+    let folder = Folder::new();
+    let help = folder.good("--help").stdout;
+    let commands = ["render", "check", "info", "schema", "convert", "compare", "scenes", "bench"];
+    for command in commands {
+        assert!(help.contains(command), "{command}");
+        let own = folder.good(&format!("{command} --help")).stdout;
+        assert!(own.contains("Usage: juggler") && !own.contains('\x1b'), "{own}");
+    }
+    let render = folder.good("render --help").stdout;
+    for flag in [
+        "--output",
+        "--size",
+        "--samples",
+        "--integrator",
+        "--camera",
+        "--frame",
+        "--frames",
+        "--at",
+        "--crop",
+        "--seed",
+        "--threads",
+        "--max-depth",
+        "--max-memory",
+        "--tone",
+        "--exposure",
+        "--bits",
+        "--quality",
+        "--stats",
+        "--progress",
+        "--quiet",
+        "--format",
+    ] {
+        assert!(render.contains(flag), "{flag}");
+    }
+    assert!(folder.good("--version").stdout.starts_with("juggler "));
+}
+
+#[test]
+fn built_in_scenes_are_listed_and_render() {
+    let folder = Folder::new();
+    let list = folder.good("scenes").stdout;
+    assert!(list.lines().any(|line| line.starts_with("juggler ")), "{list}");
+    for line in list.lines() {
+        let name = line.split_whitespace().next().unwrap();
+        assert!(line.len() > name.len() + 2, "{line}");
+        folder.good(&format!("check {name}"));
+    }
+}
+
+#[test]
+fn what_is_in_a_scene() {
+    let folder = Folder::new();
+    let words = folder.good("info ball.json").stdout;
+    assert!(words.starts_with("Ball") && words.contains("main, top") && words.contains("4 frames, 2 s"), "{words}");
+    let json: serde_json::Value = serde_json::from_str(&folder.good("info ball.json --json").stdout).unwrap();
+    assert_eq!((&json["geometry"]["shapes"], &json["animation"]["frames"]), (&2.into(), &4.into()));
+    assert_eq!(json["cameras"], serde_json::json!(["main", "top"]));
+}
+
+#[test]
+fn the_schema_is_one_json_object() {
+    let schema: serde_json::Value = serde_json::from_str(&Folder::new().good("schema").stdout).unwrap();
+    assert!(schema["properties"]["objects"].is_object());
+}
+
+#[test]
+fn comparisons_answer_with_their_status() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o a.pfm");
+    folder.good("render ball.json -q -o b.pfm --seed 1");
+    folder.good("render ball.json -q -o small.pfm --size 4x4");
+    assert!(folder.good("compare a.pfm a.pfm").stdout.starts_with("equal to the bit"));
+    let different = folder.run("compare a.pfm b.pfm");
+    assert!(different.status == 1 && different.stdout.starts_with("different") && different.stderr.is_empty());
+    assert!(folder.good("compare a.pfm b.pfm --tolerance 10").stdout.starts_with("equal within"));
+    assert_eq!(folder.run("compare a.pfm b.pfm --tolerance 1e-9").status, 1);
+    assert!(folder.bad("compare a.pfm small.pfm", 1).contains("16×9"));
+    let stats: serde_json::Value = serde_json::from_str(&folder.run("compare a.pfm b.pfm --stats -").stdout).unwrap();
+    assert!(stats["equal"] == false && stats["rmse"].as_f64().unwrap() > 0.0, "{stats}");
+    let keys: Vec<&String> = stats.as_object().unwrap().keys().collect();
+    assert_eq!(keys, ["version", "equal", "same_bits", "rmse", "relative_mse", "max"]);
+}
+
+#[test]
+fn nobody_listening_is_no_failure() {
+    let folder = Folder::new();
+    for line in ["schema", "--help", "scenes"] {
+        let mut child = folder.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let run = child.wait_with_output().unwrap();
+        assert_eq!((run.status.code(), String::from_utf8(run.stderr).unwrap().as_str()), (Some(0), ""), "{line}");
+    }
+}
+
+#[test]
+fn a_reader_of_the_picture_that_goes_away_is_a_failure_but_no_panic() {
+    let folder = Folder::new();
+    let mut command = folder.command("render ball.json --size 400x400 --samples 1 -q -o - --format pfm");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let run = child.wait_with_output().unwrap();
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert!(run.status.code() == Some(3) && !message.contains("panicked"), "{:?}: {message}", run.status);
+}
+
+#[test]
+fn no_colour_without_a_terminal_or_when_not_wanted() {
+    let folder = Folder::new();
+    for line in ["render jugler", "render ball.json --size 3", "render ball.json --progress bar"] {
+        for no_color in [false, true] {
+            let mut command = folder.command(line);
+            if no_color {
+                command.env("NO_COLOR", "1");
+            }
+            let output = command.output().unwrap();
+            assert!(!output.stderr.contains(&0x1b) && !output.stdout.contains(&0x1b), "{line}");
+        }
+    }
+}
+
+#[test]
+fn schedulers_are_compared_in_a_table() {
+    let folder = Folder::new();
+    let table = folder.good("bench schedulers ball.json --size 20x20 --samples 1 --repeats 1 --threads 2").stdout;
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 3, "{table}");
+    assert!(lines[0].contains("stealing") && lines[1].starts_with("ball") && lines[2].contains(" 2 "), "{table}");
+}
+
+#[test]
+fn a_warning_is_no_reason_to_say_no() {
+    let folder = Folder::new();
+    fs::write(folder.path("plain.json"), r#"{"version": 1, "objects": [{"shape": "sphere"}]}"#).unwrap();
+    assert!(folder.good("check plain.json").stdout.contains("no mistakes"));
+}

@@ -1,0 +1,95 @@
+//! What is wrong is said once, on standard error, with the exit status that fits, and nothing is left behind.
+
+use crate::harness::Folder;
+use std::fs;
+
+#[test]
+fn wrong_command_lines() {
+    let folder = Folder::new();
+    for line in [
+        "",
+        "rendr",
+        "render",
+        "render ball.json --no-such-flag",
+        "render ball.json --size 5",
+        "render ball.json --size 0x5",
+        "render ball.json --samples 0",
+        "render ball.json --samples -1",
+        "render ball.json --threads 0",
+        "render ball.json --crop 1,2,3",
+        "render ball.json --crop 10,0,10,1",
+        "render ball.json --frames 3..3",
+        "render ball.json --frames 4..",
+        "render ball.json --frame 1 --at 2",
+        "render ball.json --max-memory lots",
+        "render ball.json --integrator clasic",
+        "render ball.json --integrator normals --max-depth 3",
+        "render ball.json --camera mian",
+        "render ball.json --tone sepia",
+        "render ball.json --bits 12",
+        "render ball.json --quality 90",
+        "render ball.json -o a.tga",
+        "render ball.json -o a",
+        "render ball.json -o - --stats -",
+        "render ball.json -o - --frames 0..2",
+        "render ball.json -o a.webp --size 20000x1",
+        "compare ball.json",
+        "bench nothing",
+    ] {
+        let message = folder.bad(line, 2);
+        assert!(!message.trim().is_empty(), "{line}");
+        assert_eq!(folder.files(), [""; 0], "{line}");
+    }
+}
+
+#[test]
+fn names_that_were_probably_meant() {
+    let folder = Folder::new();
+    let message = folder.bad("render jugler", 2);
+    assert_eq!(message.trim(), "error: no file and no built-in scene is called `jugler`, did you mean `juggler`?");
+    assert!(folder.bad("render bal.json", 3).contains("did you mean `ball.json`?"));
+    assert!(folder.bad("render none/bal.json", 3).contains("`none/bal.json`"));
+    assert!(folder.bad("render ball.json --integrator clasic", 2).contains("did you mean `classic`?"));
+    assert!(folder.bad("render ball.json --camera mian", 2).contains("did you mean `main`?"));
+    assert!(folder.bad("render ball.json --smaples 3", 2).contains("--samples"));
+}
+
+#[test]
+fn files_that_cannot_be() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("folder.png")).unwrap();
+    fs::write(folder.path("junk.png"), "no picture").unwrap();
+    folder.bad("render ball.json -o none/there.png", 3);
+    folder.bad("render ball.json -o folder.png", 3);
+    folder.bad("render ball.json -q -o a.png --stats none/there.json", 3);
+    folder.bad("compare junk.png junk.png", 3);
+    folder.bad("compare none.png none.png", 3);
+    folder.bad("convert ball.json none/there.json", 3);
+    folder.bad("render folder.png", 2);
+    assert_eq!(folder.files(), ["a.png", "folder.png", "junk.png"]);
+}
+
+#[test]
+fn scenes_with_mistakes() {
+    let folder = Folder::new();
+    fs::write(folder.path("bad.json"), "{\"version\": 1,\n \"objects\": [{\"shape\": {\"spere\": {}}}]}").unwrap();
+    for (command, status) in [("render", 2), ("info", 2), ("check", 1)] {
+        let message = folder.bad(&format!("{command} bad.json"), status);
+        assert!(message.contains("bad.json:2:") && message.contains("sphere"), "{command}: {message}");
+        assert_eq!(message.matches("spere").count(), message.lines().filter(|line| line.contains("spere")).count());
+    }
+    fs::write(folder.path("cut.json"), "{\"version\": 1, \"obj").unwrap();
+    folder.bad("render cut.json", 2);
+    fs::write(folder.path("binary.json"), [0xff, 0xfe, 0, 1]).unwrap();
+    folder.bad("render binary.json", 2);
+    assert_eq!(folder.files(), ["bad.json", "binary.json", "cut.json"]);
+}
+
+#[test]
+fn too_little_memory_is_said_before_rendering() {
+    let folder = Folder::new();
+    let message = folder.bad("render ball.json --size 20000x20000 -o a.jpg --max-memory 512M", 2);
+    assert!(message.contains("512.0 MiB") && message.contains("GiB") && message.contains("JPEG"), "{message}");
+    assert_eq!(folder.files(), [""; 0]);
+    folder.good("render ball.json -q --max-memory 4G --threads 1");
+}

@@ -1,0 +1,10 @@
+//! The program as people and scripts use it: each test in a fresh folder.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod answers;
+mod errors;
+mod harness;
+mod pictures;
+mod signals;
+mod statistics;

@@ -1,0 +1,139 @@
+//! What `juggler render` writes, and where.
+
+use crate::harness::Folder;
+use juggler::imaging;
+use juggler::math::Image;
+use std::fs;
+
+fn image(folder: &Folder, name: &str) -> Image {
+    imaging::read(&folder.path(name)).unwrap()
+}
+
+#[test]
+fn the_picture_is_named_after_the_scene() {
+    let folder = Folder::new();
+    let run = folder.good("render ball.json");
+    assert_eq!(folder.files(), ["ball.png"]);
+    assert!(run.stdout.starts_with("ball.png: 16x9, 2 samples, "), "{}", run.stdout);
+    assert!(run.stdout.trim_end().ends_with(" rays/s") && run.stdout.contains("millisecond"), "{}", run.stdout);
+    folder.good("render juggler --size 8x5 --samples 1 -q");
+    assert_eq!(folder.files(), ["ball.png", "juggler.png"]);
+}
+
+#[test]
+fn one_pixel_is_a_picture() {
+    let folder = Folder::new();
+    folder.good("render ball.json --size 1x1 --samples 1 -q");
+    let one = image(&folder, "ball.png");
+    assert_eq!((one.width(), one.height()), (1, 1));
+}
+
+#[test]
+fn every_format_holds_the_same_picture() {
+    let folder = Folder::new();
+    for name in ["a.pfm", "a.exr", "a.hdr", "a.png", "a.webp", "a.jpg"] {
+        folder.good(&format!("render ball.json -q -o {name}"));
+        assert_eq!((image(&folder, name).width(), image(&folder, name).height()), (16, 9), "{name}");
+    }
+    folder.good("compare a.exr a.pfm");
+    folder.good("compare a.hdr a.pfm --tolerance 0.01");
+    folder.good("compare a.webp a.png");
+    folder.good("render ball.json -q -o half.exr --bits 16");
+    folder.good("compare half.exr a.pfm --tolerance 0.001");
+    folder.good("render ball.json -q -o deep.png --bits 16");
+    assert!(fs::metadata(folder.path("deep.png")).unwrap().len() > fs::metadata(folder.path("a.png")).unwrap().len());
+    folder.good("render ball.json -q -o low.jpg --quality 5");
+    assert!(fs::metadata(folder.path("low.jpg")).unwrap().len() < fs::metadata(folder.path("a.jpg")).unwrap().len());
+}
+
+#[test]
+fn standard_output_gets_the_bytes_of_the_file() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o a.png");
+    folder.good("render ball.json -q -o a.exr");
+    let png = folder.run("render ball.json -o -");
+    assert!(png.status == 0 && png.stderr.contains("16x9"), "{}", png.stderr);
+    assert_eq!(png.bytes, fs::read(folder.path("a.png")).unwrap());
+    assert_eq!(folder.good("render ball.json -q -o - --format exr").bytes, fs::read(folder.path("a.exr")).unwrap());
+    assert_eq!(folder.files(), ["a.exr", "a.png"]);
+}
+
+#[test]
+fn an_existing_picture_is_replaced() {
+    let folder = Folder::new();
+    fs::write(folder.path("ball.png"), "old").unwrap();
+    folder.good("render ball.json -q");
+    assert_eq!(image(&folder, "ball.png").width(), 16);
+    assert_eq!(folder.files(), ["ball.png"]);
+}
+
+#[test]
+fn frames_are_half_open() {
+    let folder = Folder::new();
+    let run = folder.good("render ball.json --frames 1..3");
+    assert_eq!(folder.files(), ["ball_0001.png", "ball_0002.png"]);
+    assert_eq!(run.stdout.lines().count(), 2);
+    folder.good("render ball.json -q --frames 2.. -o f_##.png --stats s##.json");
+    assert_eq!(folder.files(), ["ball_0001.png", "ball_0002.png", "f_02.png", "f_03.png", "s02.json", "s03.json"]);
+    folder.good("compare ball_0002.png f_02.png");
+    folder.good("render ball.json -q --frame 2 -o single.png");
+    folder.good("compare single.png f_02.png");
+    folder.good("render ball.json -q --at 1.0 -o moment.png");
+    folder.good("compare moment.png single.png");
+    assert_eq!(folder.run("compare f_02.png f_03.png").status, 1);
+}
+
+#[test]
+fn a_crop_is_a_part_of_the_picture() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o whole.pfm");
+    folder.good("render ball.json -q -o part.pfm --crop 5,2,4,3");
+    let (whole, part) = (image(&folder, "whole.pfm"), image(&folder, "part.pfm"));
+    assert_eq!((part.width(), part.height()), (4, 3));
+    for (y, row) in part.pixels().chunks(4).enumerate() {
+        let start = (y + 2) * 16 + 5;
+        assert_eq!(row, &whole.pixels()[start..start + 4]);
+    }
+}
+
+#[test]
+fn what_flags_change_and_what_they_do_not() {
+    let folder = Folder::new();
+    let plain = folder.hash("ball.json");
+    for same in
+        ["--threads 1", "--threads 3", "--frame 0", "--at 0", "--integrator classic", "--camera main", "--exposure -1"]
+    {
+        assert_eq!(folder.hash(&format!("ball.json {same}")), plain, "{same}");
+    }
+    let others =
+        ["--samples 3", "--seed 1", "--size 16x10", "--camera top", "--frame 1", "--at 0.1", "--integrator normals"];
+    let mut seen = vec![plain];
+    for other in others {
+        let hash = folder.hash(&format!("ball.json {other}"));
+        assert!(!seen.contains(&hash), "{other}");
+        seen.push(hash);
+    }
+}
+
+#[test]
+fn exposure_and_tone_change_levels_only() {
+    let folder = Folder::new();
+    let mean = |flags: &str| {
+        folder.good(&format!("render ball.json -q -o tone.png {flags}"));
+        let image = image(&folder, "tone.png");
+        image.pixels().iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / image.pixels().len() as f64
+    };
+    let plain = mean("");
+    assert!(mean("--exposure 1") > plain && mean("--exposure -1") < plain && mean("--tone linear") < plain);
+}
+
+#[test]
+fn a_converted_scene_is_the_same_picture() {
+    let folder = Folder::new();
+    folder.good("convert ball.json copy.json");
+    assert_eq!(folder.hash("ball.json"), folder.hash("copy.json"));
+    folder.good("convert ball.json later.json --frame 3");
+    assert_eq!(folder.hash("ball.json --frame 3"), folder.hash("later.json"));
+    let run = folder.good("convert juggler -");
+    assert!(run.stdout.starts_with('{') && run.stdout.contains("\"version\": 1"), "{}", run.stdout);
+}

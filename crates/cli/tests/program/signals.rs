@@ -1,0 +1,63 @@
+//! Signals end a render in order: nothing half done is left, and the exit status says so.
+#![cfg(unix)]
+
+use crate::harness::{Folder, Run};
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Starts a render that would take hours, and sends a signal when its first bytes are there.
+fn interrupt(folder: &Folder, signal: &str) -> Run {
+    let mut command = folder.command("render ball.json --samples 1000000 --size 200x200 -o out.png");
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let before = folder.files().len();
+    let start = Instant::now();
+    while folder.files().len() == before {
+        assert!(start.elapsed() < Duration::from_secs(20), "nothing was begun");
+        sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+    let run = Run::of(child.wait_with_output().unwrap());
+    assert!(start.elapsed() < Duration::from_secs(25), "it took too long to stop");
+    run
+}
+
+#[test]
+fn an_interrupted_render_leaves_what_was_there() {
+    for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
+        let folder = Folder::new();
+        fs::write(folder.path("out.png"), "old").unwrap();
+        fs::write(folder.path("other.txt"), "").unwrap();
+        let run = interrupt(&folder, signal);
+        assert_eq!((run.status, run.stdout.as_str(), run.stderr.trim()), (status, "", "interrupted"));
+        assert_eq!(folder.files(), ["other.txt", "out.png"]);
+        assert_eq!(fs::read_to_string(folder.path("out.png")).unwrap(), "old");
+    }
+}
+
+#[test]
+fn progress_comes_while_it_renders() {
+    let folder = Folder::new();
+    let line = "render ball.json --samples 1000000 --size 200x200 -o out.png --progress json";
+    let mut child = folder.command(line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    let mut next = || {
+        let mut line = String::new();
+        lines.read_line(&mut line).unwrap();
+        serde_json::from_str::<Value>(&line).unwrap()
+    };
+    assert_eq!(next()["event"], "start");
+    let progress = next();
+    let keys: Vec<&String> = progress.as_object().unwrap().keys().collect();
+    assert_eq!(keys, ["event", "fraction", "rays", "rays_per_second", "eta_seconds"]);
+    let fraction = progress["fraction"].as_f64().unwrap();
+    assert!(fraction > 0.0 && fraction < 1.0 && progress["rays"].as_f64().unwrap() > 0.0, "{progress}");
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let mut rest = String::new();
+    lines.read_to_string(&mut rest).unwrap();
+    assert!(rest.ends_with("interrupted\n"), "{rest}");
+}

@@ -1,0 +1,11 @@
+//! Lesson 0: one sphere, everything else by default, into `one_sphere.png`.
+//!
+//! `cargo run --release --example 0_one_sphere`
+
+use juggler::prelude::*;
+
+fn main() -> Result<(), Error> {
+    let scene = Scene::new().add(Object::new(Sphere::default()));
+    juggler::render_to_file(&scene, &Settings::default(), "one_sphere.png")?;
+    Ok(())
+}

@@ -1,0 +1,183 @@
+//! One picture, from the scene to the file: what the program, Rust and all other users share.
+
+use crate::{Error, Settings};
+use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
+use juggler_math::{Image, Rgb, UVec2};
+use juggler_scene::{Compiled, Scene};
+use juggler_tracer::camera::Projection;
+use juggler_tracer::film::{Digest, Summary};
+use juggler_tracer::render::{self, Control, Job, Rays, Rect, Scheduler, Stopped};
+use juggler_tracer::world::World;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Memory of a thread's queues of rays.
+const THREAD_BYTES: u64 = 8 << 20;
+
+/// A scene compiled for one picture: every number is settled.
+pub struct Picture {
+    compiled: Compiled,
+    projection: Projection,
+    region: Rect,
+    tone: Tone,
+    fingerprint: String,
+}
+
+/// What is to be known about a render besides its pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Hash and mean of the linear pixels.
+    pub film: Summary,
+    /// Rays traced.
+    pub rays: Rays,
+    /// Time spent on tracing rays.
+    pub render: Duration,
+    /// Time spent on encoding and writing.
+    pub write: Duration,
+}
+
+impl Picture {
+    /// Builds the world for a scene and what is wished for beyond it.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        let scene = settings.apply(scene)?;
+        let [width, height] = scene.description.render.size;
+        let region = settings.region([width, height])?;
+        let compiled = scene.compile()?;
+        let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
+        let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
+        let tone = scene.description.tone.clone();
+        Ok(Self { projection, region, tone, fingerprint: scene.fingerprint(), compiled })
+    }
+
+    /// Width and height of what is rendered: of the crop when there is one.
+    pub fn size(&self) -> [u32; 2] {
+        [self.region.width, self.region.height]
+    }
+
+    /// Samples per pixel.
+    pub fn samples(&self) -> u32 {
+        self.compiled.settings.samples
+    }
+
+    /// Samples of all pixels.
+    pub fn total_samples(&self) -> u64 {
+        self.region.area().saturating_mul(u64::from(self.samples()))
+    }
+
+    /// What can be seen.
+    pub fn world(&self) -> &World {
+        &self.compiled.world
+    }
+
+    /// World, cameras and settings.
+    pub fn compiled(&self) -> &Compiled {
+        &self.compiled
+    }
+
+    /// A hash of everything that decides the pixels.
+    pub fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
+
+    /// The head of its file.
+    pub fn header(&self, options: Options) -> Header {
+        let [width, height] = self.size();
+        let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+        let software = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
+        let metadata = vec![text("Software", software), text("Fingerprint", &self.fingerprint)];
+        Header { tone: self.tone.clone(), options, metadata, ..Header::new(width, height) }
+    }
+
+    /// Bytes that rendering holds at once, the file format's own not among them.
+    pub fn memory_needed(&self, threads: usize) -> u64 {
+        let geometry = self.world().geometry();
+        let world = (geometry.geometry_bytes as u64).saturating_add(geometry.bvh_bytes as u64);
+        let queues = THREAD_BYTES.saturating_mul(threads as u64);
+        world.saturating_add(render::band_bytes(self.region)).saturating_add(queues)
+    }
+
+    /// The engine's view of it.
+    pub fn job(&self) -> Job<'_> {
+        let settings = &self.compiled.settings;
+        Job {
+            world: &self.compiled.world,
+            camera: &self.projection,
+            integrator: &*settings.integrator,
+            filter: settings.filter.filter(settings.samples),
+            pattern: settings.sampler.pattern(settings.samples),
+            samples: settings.samples,
+            seed: settings.seed,
+        }
+    }
+
+    /// Renders and hands whole finished rows to `rows`, from top to bottom; only a band of them is in memory
+    /// at once.
+    pub fn render<E: From<Stopped>>(
+        &self,
+        scheduler: Scheduler,
+        control: &Control,
+        mut rows: impl FnMut(&[Rgb]) -> Result<(), E>,
+    ) -> Result<Summary, E> {
+        let [width, height] = self.size();
+        let mut digest = Digest::new(width, height);
+        render::render(&self.job(), self.region, scheduler, control, |band: &[Rgb]| {
+            digest.update(band);
+            rows(band)
+        })
+        .map(|()| digest.finish())
+    }
+
+    /// Renders into a file, or whatever else the writer writes to.
+    pub fn write(&self, mut writer: Box<dyn RowWriter>, control: &Control) -> Result<Outcome, Error> {
+        let start = Instant::now();
+        let mut write = Duration::ZERO;
+        let film = self.render(Scheduler::default(), control, |rows| {
+            let start = Instant::now();
+            writer.write_rows(rows)?;
+            write += start.elapsed();
+            Ok::<(), Error>(())
+        })?;
+        let render = start.elapsed().saturating_sub(write);
+        let finish = Instant::now();
+        writer.finish()?;
+        Ok(Outcome { film, rays: control.rays(), render, write: write + finish.elapsed() })
+    }
+
+    /// Renders into memory.
+    pub fn image(&self, control: &Control) -> Result<Image, Stopped> {
+        let [width, height] = self.size();
+        let mut image = Image::filled(width, height, Rgb::BLACK);
+        let mut rest = image.pixels_mut();
+        self.render(Scheduler::default(), control, |rows| {
+            let (these, others) = std::mem::take(&mut rest).split_at_mut(rows.len());
+            these.copy_from_slice(rows);
+            rest = others;
+            Ok::<(), Stopped>(())
+        })?;
+        Ok(image)
+    }
+}
+
+/// Renders a scene into memory, on the threads of the current rayon pool.
+///
+/// ```
+/// use juggler::prelude::*;
+///
+/// let scene = Scene::new().size(8, 8).add(Object::new(Sphere::default()));
+/// let image = juggler::render(&scene, &Settings { samples: Some(1), ..Settings::default() })?;
+/// assert!(image.pixels().iter().any(|pixel| pixel.luminance() > 0.5));
+/// # Ok::<(), juggler::Error>(())
+/// ```
+pub fn render(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
+    Ok(Picture::new(scene, settings)?.image(&Control::default())?)
+}
+
+/// Renders a scene into a file of any size, row by row; the ending picks the format. An existing file is
+/// replaced when the new one is complete.
+pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>) -> Result<Outcome, Error> {
+    let path = path.as_ref();
+    let format = Format::from_path(path)?;
+    let picture = Picture::new(scene, settings)?;
+    let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
+    picture.write(writer, &Control::default())
+}

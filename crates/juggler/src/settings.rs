@@ -1,0 +1,130 @@
+//! What a picture is asked for beyond what its scene says.
+
+use crate::Error;
+use crate::kinds::{by_name, check_name};
+use juggler_scene::Scene;
+use juggler_scene::description::CameraName;
+use juggler_tracer::integrator::AnyIntegrator;
+use juggler_tracer::render::Rect;
+
+/// Wishes that come before what the scene file says. What is `None` stays as the scene has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Width and height in pixels.
+    pub size: Option<[u32; 2]>,
+    /// Samples per pixel.
+    pub samples: Option<u32>,
+    /// Name of an integrator. The scene's own numbers are kept when it is the scene's own integrator.
+    pub integrator: Option<String>,
+    /// How often a path may be mirrored or refracted.
+    pub max_depth: Option<u32>,
+    /// Name of one of the scene's cameras.
+    pub camera: Option<String>,
+    /// Another seed, another noise.
+    pub seed: Option<u64>,
+    /// The part of the picture that is rendered; all of it without.
+    pub crop: Option<Rect>,
+    /// Name of a tone curve, for files that do not keep linear light.
+    pub curve: Option<String>,
+    /// Photographic stops, likewise: each doubles the light.
+    pub exposure_stops: Option<f32>,
+}
+
+impl Settings {
+    /// The scene as it is wished for.
+    pub fn apply(&self, scene: &Scene) -> Result<Scene, Error> {
+        let mut scene = scene.clone();
+        let description = &mut scene.description;
+        if let Some(name) = &self.camera {
+            let single = description.camera.iter().map(|_| "camera");
+            check_name("camera", name, single.chain(description.cameras.keys().map(String::as_str)))?;
+            description.render.camera = Some(CameraName(name.clone()));
+        }
+        let render = &mut description.render;
+        render.size = self.size.unwrap_or(render.size);
+        render.samples = self.samples.unwrap_or(render.samples);
+        render.seed = self.seed.unwrap_or(render.seed);
+        if let Some(name) = self.integrator.as_deref().filter(|name| *name != render.integrator.name()) {
+            render.integrator = by_name("integrator", name)?;
+        }
+        if let Some(depth) = self.max_depth {
+            limit_depth(&mut render.integrator, depth)?;
+        }
+        if let Some(name) = &self.curve {
+            description.tone.curve = by_name("tone curve", name)?;
+        }
+        description.tone.exposure_stops = self.exposure_stops.unwrap_or(description.tone.exposure_stops);
+        Ok(scene)
+    }
+
+    /// The part of a picture of this size that is rendered.
+    pub fn region(&self, [width, height]: [u32; 2]) -> Result<Rect, Error> {
+        let Some(crop) = self.crop else { return Ok(Rect { x: 0, y: 0, width, height }) };
+        let inside =
+            |start: u32, length: u32, edge: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= edge);
+        if inside(crop.x, crop.width, width) && inside(crop.y, crop.height, height) {
+            return Ok(crop);
+        }
+        let Rect { x, y, width: w, height: h } = crop;
+        Err(Error::Settings(format!("the crop {x},{y},{w},{h} reaches beyond the picture of {width}x{height} pixels")))
+    }
+}
+
+fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> {
+    match integrator {
+        AnyIntegrator::Classic(classic) => classic.max_depth = depth,
+        other => {
+            let name = other.name();
+            return Err(Error::Settings(format!("the integrator `{name}` follows no path whose depth has a limit")));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_tracer::integrator::{Classic, Normals};
+
+    fn scene() -> Scene {
+        let mut scene = Scene::new().size(20, 10);
+        scene.description.render.integrator = Classic { min_weight: 0.5, ..Classic::default() }.into();
+        scene
+    }
+
+    #[test]
+    fn what_is_not_wished_for_stays() {
+        assert_eq!(Settings::default().apply(&scene()).unwrap().description, scene().description);
+        let own = Settings { integrator: Some("classic".into()), max_depth: Some(3), ..Settings::default() };
+        let expected = Classic { min_weight: 0.5, max_depth: 3, ..Classic::default() };
+        assert_eq!(own.apply(&scene()).unwrap().description.render.integrator, expected.into());
+    }
+
+    #[test]
+    fn another_integrator_comes_with_its_defaults() {
+        let other = Settings { integrator: Some("normals".into()), ..Settings::default() };
+        let scene = other.apply(&scene()).unwrap();
+        assert_eq!(scene.description.render.integrator, Normals::default().into());
+        let deep = Settings { max_depth: Some(3), ..other };
+        assert!(deep.apply(&scene).unwrap_err().to_string().contains("normals"));
+    }
+
+    #[test]
+    fn crops_lie_inside() {
+        let region = |x, y, width, height| {
+            let crop = Some(Rect { x, y, width, height });
+            Settings { crop, ..Settings::default() }.region([20, 10])
+        };
+        assert_eq!(region(5, 5, 15, 5).unwrap(), Rect { x: 5, y: 5, width: 15, height: 5 });
+        for (x, y, width, height) in [(5, 5, 16, 5), (5, 5, 15, 6), (20, 0, 1, 1), (0, 0, 0, 1), (u32::MAX, 0, 2, 1)] {
+            assert!(region(x, y, width, height).is_err());
+        }
+        assert_eq!(Settings::default().region([20, 10]).unwrap(), Rect { x: 0, y: 0, width: 20, height: 10 });
+    }
+
+    #[test]
+    fn cameras_are_known_by_name() {
+        let wish = Settings { camera: Some("top".into()), ..Settings::default() };
+        assert!(wish.apply(&scene()).is_err());
+    }
+}

@@ -1,0 +1,49 @@
+//! Numbers that only here are known to be too many, and lights and backgrounds that cannot be.
+
+use crate::description::{Backdrop, Description, Render};
+use crate::path::Path;
+use crate::report::Finding;
+
+/// Longest edge of a picture.
+pub const MAX_EDGE: u32 = 65_536;
+/// Most pixels of a picture.
+pub const MAX_PIXELS: u64 = 1 << 31;
+/// Most samples of a pixel.
+pub const MAX_SAMPLES: u32 = 1 << 24;
+
+/// Checks size and samples, which programs may have changed since the scene was read.
+pub fn check(render: &Render, findings: &mut Vec<Finding>) {
+    let path = Path::root().key("render");
+    let [width, height] = render.size;
+    if !(1..=MAX_EDGE).contains(&width) || !(1..=MAX_EDGE).contains(&height) {
+        let message = format!("each number of `size` must be between 1 and {MAX_EDGE}, is {width} x {height}");
+        findings.push(Finding::error(message).at(&path.key("size")));
+    } else if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        let pixels = u64::from(width) * u64::from(height);
+        let message = format!("`size` asks for {pixels} pixels, the limit is {MAX_PIXELS}");
+        findings.push(Finding::error(message).at(&path.key("size")));
+    }
+    if !(1..=MAX_SAMPLES).contains(&render.samples) {
+        let message = format!("`samples` must be between 1 and {MAX_SAMPLES}, is {}", render.samples);
+        findings.push(Finding::error(message).at(&path.key("samples")));
+    }
+}
+
+/// Checks lights and background, and warns of lights without light.
+pub fn check_light(scene: &Description, findings: &mut Vec<Finding>) {
+    for (i, light) in scene.lights.iter().enumerate() {
+        let path = Path::root().key("lights").index(i);
+        if let Err(invalid) = light.check() {
+            let path = path.key(crate::kind::name_of(light)).join(invalid.field);
+            findings.push(Finding::error(invalid.message).at(&path));
+        } else if light.power(1.0) == 0.0 && light.ambient().is_black() {
+            findings.push(Finding::warning("this light gives no light").at(&path));
+        }
+    }
+    if let Some(Backdrop::Kind(background)) = &scene.background
+        && let Err(invalid) = background.check()
+    {
+        let path = Path::root().key("background").key(crate::kind::name_of(background)).join(invalid.field);
+        findings.push(Finding::error(invalid.message).at(&path));
+    }
+}

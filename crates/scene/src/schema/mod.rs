@@ -1,0 +1,132 @@
+//! The format as a JSON Schema, generated from the Rust types.
+//!
+//! Two forms: the [`Schema`] that [`crate::validate`] walks (expressions are numbers by then), and the one that
+//! is [`published`] for editors, where a text `"=..."` may stand for a number and a kind's name for the kind.
+
+use crate::description::Description;
+use schemars::generate::SchemaSettings;
+use serde_json::{Map, Value};
+use std::sync::LazyLock;
+
+mod numbers;
+mod publish;
+
+pub use numbers::{drop_nulls, tidy};
+pub use publish::{published, schema_json};
+
+/// The format's schema: every object closed.
+#[derive(Debug)]
+pub struct Schema {
+    root: Value,
+}
+
+/// Generated once: it is a constant, only too long to write down.
+static SCHEMA: LazyLock<Schema> = LazyLock::new(Schema::generate);
+
+impl Schema {
+    /// The schema of the format.
+    pub fn get() -> &'static Self {
+        &SCHEMA
+    }
+
+    fn generate() -> Self {
+        let settings = SchemaSettings::draft2020_12();
+        let mut root = settings.into_generator().into_root_schema_for::<Description>().to_value();
+        each_schema(&mut root, &mut close);
+        tidy(&mut root);
+        Self { root }
+    }
+
+    /// The schema of a whole scene.
+    pub fn root(&self) -> &Value {
+        &self.root
+    }
+
+    /// The definitions by name.
+    pub fn definitions(&self) -> impl Iterator<Item = (&String, &Value)> {
+        self.root.get("$defs").and_then(Value::as_object).into_iter().flatten()
+    }
+
+    /// The definition that `schema` refers to, with its name; itself when it refers to none.
+    pub fn follow<'s>(&'s self, schema: &'s Value) -> (Option<&'s str>, &'s Value) {
+        let name = schema.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
+        let target = name.and_then(|name| self.root.get("$defs")?.get(name));
+        match target {
+            Some(target) => (name, target),
+            None => (None, schema),
+        }
+    }
+
+    /// The kinds of a family with their schemas: the variants of an externally tagged enum.
+    pub fn kinds<'s>(&'s self, family: &'s Value) -> impl Iterator<Item = (&'s str, &'s Value)> {
+        variants(family).filter_map(|variant| {
+            let properties = variant.get("properties")?.as_object()?;
+            let (name, content) = properties.iter().next()?;
+            Some((name.as_str(), content))
+        })
+    }
+
+    /// Whether a kind's name alone says everything: all its fields have defaults.
+    pub fn is_all_default(&self, content: &Value) -> bool {
+        let content = self.follow(content).1;
+        let object = content.get("type").and_then(Value::as_str) == Some("object");
+        object && content.get("required").and_then(Value::as_array).is_none_or(Vec::is_empty)
+    }
+}
+
+/// The members of `oneOf`, unless they only say which keys must stand together.
+pub fn variants(schema: &Value) -> impl Iterator<Item = &Value> {
+    let variants = schema.get("oneOf").and_then(Value::as_array).into_iter().flatten();
+    variants.filter(|variant| variant.get("type").is_some() || variant.get("const").is_some())
+}
+
+/// The keys of which exactly one must stand, from a `oneOf` of `required`.
+pub fn exactly_one(schema: &Value) -> Vec<&str> {
+    let groups = schema.get("oneOf").and_then(Value::as_array).into_iter().flatten();
+    let keys = groups.filter(|group| group.get("type").is_none()).filter_map(|group| group.get("required")?.as_array());
+    keys.flatten().filter_map(Value::as_str).collect()
+}
+
+/// Calls `change` for a schema and all schemas inside it, innermost first.
+fn each_schema(schema: &mut Value, change: &mut impl FnMut(&mut Map<String, Value>)) {
+    let Some(members) = schema.as_object_mut() else { return };
+    for (key, inner) in members.iter_mut() {
+        match (key.as_str(), inner) {
+            ("$defs" | "properties", Value::Object(named)) => named.values_mut().for_each(|s| each_schema(s, change)),
+            ("oneOf" | "anyOf" | "prefixItems", Value::Array(list)) => {
+                list.iter_mut().for_each(|s| each_schema(s, change));
+            }
+            ("items" | "additionalProperties", inner) => each_schema(inner, change),
+            _ => {}
+        }
+    }
+    change(members);
+}
+
+/// No keys but those that are known.
+fn close(schema: &mut Map<String, Value>) {
+    let object = schema.get("type").is_some_and(|t| t == "object");
+    if object && !schema.contains_key("additionalProperties") {
+        schema.insert("additionalProperties".into(), false.into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn families_list_their_kinds_and_every_object_is_closed() {
+        let schema = Schema::get();
+        let definition = |name: &str| schema.root().get("$defs").and_then(|d| d.get(name)).unwrap();
+        let shapes: Vec<_> = schema.kinds(definition("AnyShape")).map(|(name, _)| name).collect();
+        assert!(shapes.contains(&"sphere") && shapes.contains(&"mesh"), "{shapes:?}");
+        let (_, sphere) = schema.kinds(definition("AnyShape")).find(|(name, _)| *name == "sphere").unwrap();
+        assert!(schema.is_all_default(sphere));
+        assert_eq!(schema.kinds(definition("Object")).count(), 0);
+        assert_eq!(exactly_one(definition("Object")), ["shape", "group", "objects", "chain", "limb"]);
+        for (name, schema) in schema.definitions().filter(|(_, s)| s.get("type").is_some_and(|t| t == "object")) {
+            assert!(schema.get("additionalProperties").is_some(), "{name}");
+        }
+    }
+}

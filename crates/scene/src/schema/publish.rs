@@ -1,0 +1,98 @@
+//! The schema for editors and other programs.
+
+use super::{Schema, each_schema};
+use serde_json::{Map, Value, json};
+
+/// Definitions whose numbers come before all expressions.
+const PLAIN: [&str; 2] = ["Animation", "Variable"];
+
+/// The published schema: numbers may be expressions, kinds may be names, null is left out.
+pub fn published() -> Value {
+    let schema = Schema::get();
+    let mut root = schema.root().clone();
+    let plain: Vec<(String, Value)> = definitions(&mut root, |definitions| {
+        PLAIN.iter().filter_map(|name| Some(((*name).to_owned(), definitions.shift_remove(*name)?))).collect()
+    });
+    each_schema(&mut root, &mut |members| {
+        drop_null(members);
+        allow_names(schema, members);
+        allow_expression(members);
+    });
+    definitions(&mut root, |definitions| {
+        definitions.extend(plain);
+        definitions.insert("Expression".into(), expression());
+    });
+    if let Some(root) = root.as_object_mut() {
+        let version = json!({"description": "Version of the format.", "const": 1});
+        let include = json!({"description": "Other scene files, relative to this one.",
+            "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]});
+        if let Some(properties) = root.get_mut("properties").and_then(Value::as_object_mut) {
+            properties.insert("version".into(), version);
+            properties.insert("include".into(), include);
+        }
+    }
+    root
+}
+
+/// The published schema as a file.
+pub fn schema_json() -> String {
+    let mut text = serde_json::to_string_pretty(&published()).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+fn definitions<T: Default>(root: &mut Value, change: impl FnOnce(&mut Map<String, Value>) -> T) -> T {
+    root.get_mut("$defs").and_then(Value::as_object_mut).map(change).unwrap_or_default()
+}
+
+fn expression() -> Value {
+    json!({
+        "description": "A number as an expression, such as `=2*pi*frame/frames`.",
+        "type": "string",
+        "pattern": "^=",
+        "maxLength": crate::expression::MAX_LENGTH + 1,
+    })
+}
+
+/// What may be absent need not be null.
+fn drop_null(schema: &mut Map<String, Value>) {
+    if let Some(Value::Array(types)) = schema.get_mut("type") {
+        types.retain(|t| t != "null");
+        if let [one] = types.as_slice() {
+            let one = one.clone();
+            schema.insert("type".into(), one);
+        }
+    }
+    if schema.get("default").is_some_and(Value::is_null) {
+        schema.shift_remove("default");
+    }
+    let Some(Value::Array(branches)) = schema.get_mut("anyOf") else { return };
+    branches.retain(|branch| branch.get("type").is_none_or(|t| t != "null"));
+    if let [one] = branches.as_slice() {
+        let one = one.as_object().cloned().unwrap_or_default();
+        schema.shift_remove("anyOf");
+        schema.extend(one);
+    }
+}
+
+/// A kind whose fields all have defaults may be written as its name.
+fn allow_names(schema: &Schema, members: &mut Map<String, Value>) {
+    let family = Value::Object(members.clone());
+    let names: Vec<&str> =
+        schema.kinds(&family).filter(|(_, content)| schema.is_all_default(content)).map(|(name, _)| name).collect();
+    if let Some(Value::Array(variants)) = members.get_mut("oneOf").filter(|_| !names.is_empty()) {
+        variants.push(json!({"description": "A kind with all its defaults.", "type": "string", "enum": names}));
+    }
+}
+
+/// Where a number stands, an expression may stand.
+fn allow_expression(members: &mut Map<String, Value>) {
+    if members.get("type").is_none_or(|t| t != "number" && t != "integer") {
+        return;
+    }
+    let outside = ["description", "default"];
+    let (kept, number): (Map<String, Value>, Map<String, Value>) =
+        std::mem::take(members).into_iter().partition(|(key, _)| outside.contains(&key.as_str()));
+    *members = kept;
+    members.insert("anyOf".into(), json!([number, {"$ref": "#/$defs/Expression"}]));
+}

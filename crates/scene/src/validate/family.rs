@@ -1,0 +1,86 @@
+//! Families: `{"sphere": {...}}`, or `"sphere"` where all fields have defaults; and lists of fixed words.
+
+use super::{Walk, words};
+use crate::document::{Members, Node, Value as Written};
+use crate::path::Step;
+use crate::report::Finding;
+use crate::schema::variants;
+use crate::suggest::meant_or_all;
+use serde_json::Value;
+
+impl Walk {
+    pub(super) fn family(&mut self, node: &Node, name: &str, family: &'static Value) -> Option<Value> {
+        let noun = words::noun(name);
+        match &node.value {
+            Written::Object(members) if self.schema.kinds(family).next().is_some() => {
+                self.kind(node, members, &noun, family)
+            }
+            Written::String(text) => self.word(node, text, &noun, family),
+            _ => {
+                let example = self.schema.kinds(family).next().map(|(kind, _)| format!(" such as {{\"{kind}\": ...}}"));
+                let example = example.unwrap_or_else(|| format!(": {}", words::list(fixed_words(family), "or")));
+                self.mismatch(node, &format!("{} {noun}{example}", words::article(&noun)))
+            }
+        }
+    }
+
+    fn kind(&mut self, node: &Node, members: &Members, noun: &str, family: &'static Value) -> Option<Value> {
+        let mut entries = members.iter();
+        let (Some((key, member)), None) = (entries.next(), entries.next()) else {
+            let found = match members.len() {
+                0 => "none".to_owned(),
+                _ => words::list(members.keys().map(String::as_str), "and"),
+            };
+            let message = format!("{} {noun} is of exactly one kind, found {found}", words::article(noun));
+            let tagged = members.get("type").and_then(|tag| tag.node.as_str());
+            let help = tagged.map(|kind| format!("write {{\"{kind}\": {{...}}}}")).unwrap_or_else(|| {
+                let kinds: Vec<String> = self.schema.kinds(family).map(|(kind, _)| format!("`{kind}`")).collect();
+                format!("kinds: {}", kinds.join(", "))
+            });
+            return self.report(node, Finding::error(message).help(help));
+        };
+        let Some((_, content)) = self.schema.kinds(family).find(|(kind, _)| kind == key) else {
+            let kinds: Vec<&str> = self.schema.kinds(family).map(|(kind, _)| kind).collect();
+            let finding = Finding::error(format!("unknown kind of {noun} `{key}`"));
+            let finding = finding.maybe_help(meant_or_all(key, kinds.iter().copied())).on(member.key_place);
+            self.inside(Step::Key(key.clone()), |walk| walk.findings.push(finding.at(&walk.path)));
+            return None;
+        };
+        let value = self.inside(Step::Key(key.clone()), |walk| walk.value(&member.node, content))?;
+        Some(Value::Object([(key.clone(), value)].into_iter().collect()))
+    }
+
+    /// A kind by its name alone, or one of a list of words.
+    fn word(&mut self, node: &Node, text: &str, noun: &str, family: &'static Value) -> Option<Value> {
+        if fixed_words(family).any(|word| word == text) {
+            return Some(text.into());
+        }
+        match self.schema.kinds(family).find(|(kind, _)| *kind == text) {
+            Some((kind, content)) if self.schema.is_all_default(content) => {
+                Some(Value::Object([(kind.to_owned(), Value::Object(Default::default()))].into_iter().collect()))
+            }
+            Some((kind, content)) => {
+                let required = self.schema.follow(content).1.get("required").and_then(Value::as_array);
+                let required = required.into_iter().flatten().filter_map(Value::as_str);
+                let message = format!("the {noun} `{kind}` needs {}", words::list(required, "and"));
+                self.report(node, Finding::error(message).help(format!("write {{\"{kind}\": {{...}}}}")))
+            }
+            None => {
+                let kinds = self.schema.kinds(family).map(|(kind, _)| kind);
+                let known: Vec<&str> = kinds.chain(fixed_words(family)).collect();
+                let what = if fixed_words(family).next().is_some() { "" } else { "kind of " };
+                let finding = Finding::error(format!("unknown {what}{noun} `{text}`"));
+                self.report(node, finding.maybe_help(meant_or_all(text, known.iter().copied())))
+            }
+        }
+    }
+}
+
+/// The words of an enum without contents.
+fn fixed_words(family: &Value) -> impl Iterator<Item = &str> {
+    variants(family).flat_map(|variant| {
+        let one = variant.get("const").and_then(Value::as_str);
+        let several = variant.get("enum").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
+        one.into_iter().chain(several)
+    })
+}

@@ -1,0 +1,49 @@
+//! Names: whatever is referred to must be there.
+
+use super::Reference;
+use crate::document::Node;
+use crate::report::Finding;
+use crate::suggest::meant_or_all;
+
+/// Things that a scene gives names to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// In `materials`.
+    Material,
+    /// In `textures`.
+    Texture,
+    /// In `groups`.
+    Group,
+    /// In `cameras`.
+    Camera,
+}
+
+impl Family {
+    /// The part of the scene that defines it, and what one is called.
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Material => ("materials", "material"),
+            Self::Texture => ("textures", "texture"),
+            Self::Group => ("groups", "group"),
+            Self::Camera => ("cameras", "camera"),
+        }
+    }
+}
+
+/// Reports every name that nothing has.
+pub(super) fn check(tree: &Node, references: Vec<Reference>, findings: &mut Vec<Finding>) {
+    for Reference { family, name, path } in references {
+        let (part, noun) = family.words();
+        let known = tree.get(part);
+        if known.is_some_and(|known| known.get(&name).is_some()) {
+            continue;
+        }
+        let names: Vec<&str> = known.into_iter().flat_map(Node::members).map(|(name, _)| name.as_str()).collect();
+        let help = meant_or_all(&name, names.iter().copied());
+        let help = help.unwrap_or_else(|| match family {
+            Family::Texture => "the scene has no `textures`; a colour is written [r, g, b] or \"#rrggbb\"".into(),
+            _ => format!("the scene has no `{part}`"),
+        });
+        findings.push(Finding::error(format!("no {noun} is called `{name}`")).at(&path).help(help));
+    }
+}

@@ -1,0 +1,120 @@
+//! Arrays and objects.
+
+use super::{MAX_FINDINGS, Walk, words};
+use crate::document::{Members, Node};
+use crate::path::Step;
+use crate::report::Finding;
+use crate::schema::exactly_one;
+use crate::suggest::meant_or_all;
+use serde_json::{Map, Value};
+
+/// Objects that stay when one of their members is wrong: the others can still be checked. In all others (a
+/// camera, a shape) members hang together.
+const LOOSE: [&str; 2] = ["Object", "Render"];
+
+impl Walk {
+    pub(super) fn array(&mut self, node: &Node, elements: &[Node], schema: &'static Value) -> Option<Value> {
+        let bound = |key: &str| schema.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
+        let (least, most, found) = (bound("minItems"), bound("maxItems"), elements.len());
+        let wanted = match (least, most) {
+            (Some(least), Some(most)) if least == most && found != least => Some(least.to_string()),
+            (Some(least), _) if found < least => Some(format!("at least {least}")),
+            (_, Some(most)) if found > most => Some(format!("at most {most}")),
+            _ => None,
+        };
+        if let Some(wanted) = wanted {
+            let what = words::elements(self.schema, schema);
+            let message = format!("expected {wanted} {what} in this array, found {found}");
+            return self.report(node, Finding::error(message));
+        }
+        let items = schema.get("items")?;
+        let mut values = Vec::with_capacity(found);
+        for (i, element) in elements.iter().enumerate() {
+            if self.findings.len() >= MAX_FINDINGS {
+                return None;
+            }
+            values.push(self.inside(Step::Index(i), |walk| walk.value(element, items)));
+        }
+        values.into_iter().collect::<Option<Vec<Value>>>().map(Value::Array)
+    }
+
+    pub(super) fn object(
+        &mut self,
+        node: &Node,
+        members: &Members,
+        name: Option<&'static str>,
+        schema: &'static Value,
+    ) -> Option<Value> {
+        let properties = schema.get("properties").and_then(Value::as_object);
+        let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        let root = self.path.steps().is_empty();
+        let loose = root || name.is_some_and(|name| LOOSE.contains(&name)) || properties.is_none();
+        let mut json = Map::new();
+        let mut sound = true;
+        for (key, member) in members.iter() {
+            if self.findings.len() >= MAX_FINDINGS {
+                return None;
+            }
+            let Some(schema) = properties.and_then(|known| known.get(key)).or(others) else {
+                let known: Vec<&str> =
+                    properties.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
+                let finding = unknown_key(key, &known).on(member.key_place);
+                self.inside(Step::Key(key.clone()), |walk| walk.findings.push(finding.at(&walk.path)));
+                sound = false;
+                continue;
+            };
+            match self.inside(Step::Key(key.clone()), |walk| walk.value(&member.node, schema)) {
+                Some(value) => {
+                    json.insert(key.clone(), value);
+                }
+                None => sound = false,
+            }
+        }
+        let complete = self.required(node, members, schema);
+        self.exactly_one(node, members, schema);
+        if root {
+            json.entry("version").or_insert(1.into());
+        }
+        ((complete || root) && (sound || loose)).then_some(Value::Object(json))
+    }
+
+    /// Whether all keys stand that must stand.
+    fn required(&mut self, node: &Node, members: &Members, schema: &'static Value) -> bool {
+        let required = schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
+        let missing: Vec<&str> = required.filter(|key| !members.contains_key(*key)).collect();
+        if missing.is_empty() {
+            return true;
+        }
+        let verb = if missing.len() == 1 { "is" } else { "are" };
+        let mut finding =
+            Finding::error(format!("{} {verb} missing here", words::list(missing.iter().copied(), "and")));
+        if missing == ["version"] {
+            finding = finding.help("a scene file begins with {\"version\": 1, ...");
+        }
+        self.report::<()>(node, finding).is_some()
+    }
+
+    /// Complains when not exactly one of some keys stands.
+    fn exactly_one(&mut self, node: &Node, members: &Members, schema: &'static Value) {
+        let keys = exactly_one(schema);
+        let found: Vec<&str> = keys.iter().copied().filter(|key| members.contains_key(*key)).collect();
+        if keys.is_empty() || found.len() == 1 {
+            return;
+        }
+        let found = if found.is_empty() { "none".into() } else { words::list(found, "and") };
+        let message = format!("exactly one of {} must stand here, found {found}", words::list(keys, "and"));
+        // A misspelt one is its own message.
+        let misspelt = members.keys().any(|key| schema.get("properties").is_some_and(|known| known.get(key).is_none()));
+        if found != "none" || !misspelt {
+            self.report::<()>(node, Finding::error(message));
+        }
+    }
+}
+
+fn unknown_key(key: &str, known: &[&str]) -> Finding {
+    let finding = Finding::error(format!("`{key}` is not known here"));
+    if known.is_empty() {
+        return finding.help("this has no settings: write {}");
+    }
+    finding.maybe_help(meant_or_all(key, known.iter().copied()))
+}

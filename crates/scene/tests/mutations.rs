@@ -1,0 +1,143 @@
+//! Ten thousand broken scenes: whatever the file, the program answers with a message.
+
+use juggler_scene::Scene;
+
+/// Scenes that use much of the format.
+const SEEDS: [&str; 3] = [
+    r##"{"version": 1, "title": "a", "animation": {"frames": 30, "frames_per_second": 25},
+ "variables": {"phi": "2*pi*frame/frames", "s": "(1+cos(phi))/2"},
+ "render": {"size": [64, 36], "samples": 2, "seed": 7, "integrator": {"classic": {"max_depth": 3}}, "filter": "tent"},
+ "cameras": {"main": {"perspective": {"eye": [0, 2, "=6+s"], "look_at": [0, 1, 0], "vertical_fov_degrees": 40}}},
+ "textures": {"board": {"checker": {"size": 0.5, "even": "#ffffff", "odd": [0, 0, 0]}}},
+ "materials": {"red": {"phong": {"diffuse": "board", "specular": 0.5}}, "two": {"checkerboard": {"even": "red", "odd": {"phong": {}}}}},
+ "lights": [{"point": {"position": [4, 6, 4], "intensity": 60}}, {"ambient": {"intensity": 0.1}}],
+ "groups": {"pair": [{"shape": "sphere"}, {"shape": {"cuboid": {}}, "material": "two"}]},
+ "objects": [{"group": "pair", "transform": [{"scale": 2}, {"rotate": {"axis": [0, 1, 0], "degrees": "=30*s"}}]}]}"##,
+    r##"{"version": 1, // a comment
+ "background": "#203040", "tone": {"curve": "srgb", "exposure_stops": 1},
+ "objects": [{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [0, 5, 0], "radius": 2}, "count": 8}},
+  {"limb": {"from": [0, 0, 0], "to": [0, 4, 0], "lengths": [3, 2], "plane_normal": [0, 0, 1], "counts": [4, 4], "radii": [1, 2, 1]}},
+  {"objects": [{"shape": {"polygon": {"vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0]]}}}], "material": {"phong": {"ior": 1.5}}},
+  {"shape": {"mesh": {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}}},],}"##,
+    r##"{"version": 1, "include": ["missing.json"], "camera": {"orthographic": {}}, "lights": [{"spot": {"direction": [0, -1, 0]}}],
+ "objects": [{"shape": {"cylinder": {"radius": 2}}, "transform": [{"matrix": [1,0,0,0,0,1,0,0,0,0,1,0]}]}, {"shape": {"mesh": {"file": "cow.ply"}}}]}"##,
+];
+
+/// Numbers and words at the edge of what is possible.
+const EXTREMES: [&str; 24] = [
+    "0",
+    "-0",
+    "-1",
+    "1e-45",
+    "1e-320",
+    "3.5e38",
+    "-1e308",
+    "1e309",
+    "4294967296",
+    "18446744073709551616",
+    "0.1",
+    "null",
+    "true",
+    "\"\"",
+    "\"=1/0\"",
+    "\"=frame\"",
+    "\"sphere\"",
+    "[]",
+    "{}",
+    "[[[[]]]]",
+    "\"#ffffff\"",
+    "1000000",
+    "65537",
+    "\"\\ud800\"",
+];
+
+/// A small generator of numbers that look random (SplitMix64; Steele, Lea, Flood 2014).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
+    }
+}
+
+/// The parts of a JSON text: strings, numbers, words, signs and blanks.
+fn tokens(text: &str) -> Vec<String> {
+    let mut tokens: Vec<String> = Vec::new();
+    let mut in_string = false;
+    for c in text.chars() {
+        let word = c.is_ascii_alphanumeric() || "._-+".contains(c);
+        match tokens.last_mut() {
+            Some(last) if in_string => last.push(c),
+            Some(last) if word && last.ends_with(|l: char| l.is_ascii_alphanumeric() || "._-+".contains(l)) => {
+                last.push(c);
+            }
+            _ => tokens.push(c.to_string()),
+        }
+        if c == '"' {
+            in_string = !in_string;
+        }
+    }
+    tokens
+}
+
+fn mutated(numbers: &mut Numbers) -> String {
+    let seed = SEEDS[numbers.below(SEEDS.len())];
+    let mut parts = tokens(seed);
+    for _ in 0..=numbers.below(3) {
+        let at = numbers.below(parts.len());
+        let other = numbers.below(parts.len());
+        match numbers.below(6) {
+            0 => parts.swap(at, other),
+            1 => parts[at] = EXTREMES[numbers.below(EXTREMES.len())].to_owned(),
+            2 => parts[at] = parts[other].clone(),
+            3 => drop(parts.remove(at)),
+            4 => parts.insert(at, EXTREMES[numbers.below(EXTREMES.len())].to_owned()),
+            _ => {
+                let numeric: Vec<usize> =
+                    (0..parts.len()).filter(|i| parts[*i].starts_with(|c: char| c.is_ascii_digit())).collect();
+                if !numeric.is_empty() {
+                    parts[numeric[numbers.below(numeric.len())]] = EXTREMES[numbers.below(12)].to_owned();
+                }
+            }
+        }
+    }
+    let mut bytes = parts.concat().into_bytes();
+    if numbers.below(4) == 0 {
+        let at = numbers.below(bytes.len());
+        bytes[at] = numbers.below(256) as u8;
+    }
+    if numbers.below(8) == 0 {
+        bytes.truncate(numbers.below(bytes.len()));
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[test]
+fn no_broken_scene_breaks_the_program() {
+    let mut numbers = Numbers(2026);
+    let (mut rendered, mut refused) = (0, 0);
+    for round in 0..10_000 {
+        let text = mutated(&mut numbers);
+        let outcome = std::panic::catch_unwind(|| match Scene::from_json(text.clone(), "mutated.json") {
+            Ok(scene) => {
+                let moved = scene.at_frame(7.25).map(|scene| scene.fingerprint().len());
+                scene.compile().map(|compiled| compiled.warnings.to_string().len() + moved.unwrap_or(0))
+            }
+            Err(error) => Err(error),
+        });
+        match outcome {
+            Ok(Ok(_)) => rendered += 1,
+            Ok(Err(error)) => {
+                refused += 1;
+                assert!(!error.to_string().is_empty());
+            }
+            Err(_) => panic!("round {round} panics: {text}"),
+        }
+    }
+    // Both happen often, or the mutations would test little.
+    assert!(rendered > 500 && refused > 4000, "{rendered} rendered, {refused} refused");
+}
