@@ -78,6 +78,13 @@ fn png_and_webp_keep_the_nearest_level() {
 }
 
 #[test]
+fn equal_levels_are_equal_light_in_every_format() {
+    let image = picture(33, 35, 1.0);
+    let light = |format| read(&encode(format, &image, &header(&image)));
+    assert!(compare(&light(Format::Webp), &light(Format::Png)).unwrap().same_bits);
+}
+
+#[test]
 fn all_levels_of_a_16_bit_png_are_exact() {
     let levels: Vec<f32> = (0..=65_535u32).map(|k| juggler_math::color::srgb_decode(k as f32 / 65_535.0)).collect();
     let image = Image::from_pixels(256, 256, levels.iter().map(|&v| Rgb::splat(v)).collect()).unwrap();

@@ -3,7 +3,8 @@
 use crate::harness::Folder;
 use juggler::imaging;
 use juggler::math::Image;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 
 fn image(folder: &Folder, name: &str) -> Image {
     imaging::read(&folder.path(name)).unwrap()
@@ -118,13 +119,25 @@ fn what_flags_change_and_what_they_do_not() {
 #[test]
 fn exposure_and_tone_change_levels_only() {
     let folder = Folder::new();
-    let mean = |flags: &str| {
-        folder.good(&format!("render ball.json -q -o tone.png {flags}"));
-        let image = image(&folder, "tone.png");
-        image.pixels().iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / image.pixels().len() as f64
+    let render = |flags: &str| folder.good(&format!("render ball.json -q -o tone.png {flags}"));
+    let level = |flags: &str| {
+        render(flags);
+        let file = BufReader::new(File::open(folder.path("tone.png")).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut levels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut levels).unwrap();
+        levels.iter().map(|level| f64::from(*level)).sum::<f64>() / levels.len() as f64
     };
-    let plain = mean("");
-    assert!(mean("--exposure 1") > plain && mean("--exposure -1") < plain && mean("--tone linear") < plain);
+    let plain = level("");
+    let [brighter, darker, linear] = ["--exposure 1", "--exposure -1", "--tone linear"].map(level);
+    assert!(brighter > plain + 5.0 && darker < plain - 5.0 && linear < plain - 5.0, "{brighter} {darker} {linear}");
+    // The file says its curve: read again, the light is what it was, but for half a level.
+    folder.good("render ball.json -q -o plain.png");
+    render("--tone linear");
+    folder.good("compare tone.png plain.png --tolerance 0.005");
+    for flags in ["--exposure 1", "--tone linear", "--tone gamma"] {
+        assert_eq!(folder.hash(&format!("ball.json {flags}")), folder.hash("ball.json"), "{flags}");
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod png;
 mod webp;
 
 use crate::output::Destination;
-use crate::tone::Tone;
+use crate::tone::{Curve, Srgb, Tone};
 use crate::{Format, ImageError, Limits};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Seek};
@@ -197,9 +197,10 @@ pub(crate) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<
     }
 }
 
-/// Linear light of the 256 levels of sRGB.
+/// Linear light of the 256 levels of sRGB: by the curve that wrote them, so that equal levels are equal light
+/// whatever the format.
 fn srgb_levels() -> [f32; 256] {
-    std::array::from_fn(|k| juggler_math::color::srgb_decode(k as f32 / 255.0))
+    std::array::from_fn(|k| Srgb {}.decode(k as f64 / 255.0) as f32)
 }
 
 /// Linear pixels of bytes in sRGB, three a pixel.
