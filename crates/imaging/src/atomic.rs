@@ -32,7 +32,8 @@ impl AtomicFile {
         if let Some(rights) = rights {
             builder.permissions(rights);
         }
-        let temporary = builder.tempfile_in(folder)?;
+        // The system's reason alone: the temporary name is of no use to anybody.
+        let temporary = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
         Ok(Self { temporary, place })
     }
 
@@ -64,8 +65,16 @@ fn usual_rights() -> Option<Permissions> {
     None
 }
 
-/// Writes a small file at once, whole or not at all.
+/// Whether bytes go through the place, to a device or a named pipe, instead of staying there.
+pub(crate) fn is_passage(place: &Path) -> bool {
+    fs::metadata(place).is_ok_and(|m| !m.is_file() && !m.is_dir())
+}
+
+/// Writes a small file at once, whole or not at all. Devices and named pipes are written as they are.
 pub fn write(place: &Path, bytes: &[u8]) -> io::Result<()> {
+    if is_passage(place) {
+        return File::options().write(true).open(place)?.write_all(bytes);
+    }
     let file = AtomicFile::create(place)?;
     file.handle()?.write_all(bytes)?;
     file.commit()

@@ -1,6 +1,6 @@
 //! From files to images. What a file is, its first bytes say, not its name.
 
-use crate::codec::{self, Source};
+use crate::codec::{self, Facts, Source};
 use crate::{Format, ImageError};
 use juggler_math::Image;
 use std::fs::File;
@@ -38,12 +38,12 @@ pub fn decode(place: &str, bytes: impl BufRead + Seek, limits: &Limits) -> Resul
     codec::read(Source { place, format, limits }, &mut bytes)
 }
 
-/// Reads what a picture says besides its pixels: keys and texts.
-pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>, ImageError> {
+/// Reads what a picture says besides its pixels, whatever its size.
+pub fn inspect(path: &Path) -> Result<Facts, ImageError> {
     let (place, mut bytes) = (path.display().to_string(), open(path)?);
     let format = sniff(&place, &mut bytes)?;
-    let limits = &Limits::default();
-    codec::read_metadata(Source { place: &place, format, limits }, &mut bytes)
+    let limits = &Limits { most_pixels: u64::MAX };
+    codec::inspect(Source { place: &place, format, limits }, &mut bytes)
 }
 
 fn open(path: &Path) -> Result<BufReader<File>, ImageError> {

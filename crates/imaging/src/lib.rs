@@ -19,10 +19,10 @@ pub mod input;
 pub mod output;
 pub mod tone;
 
-pub use codec::{ExrCompression, Header, Options, RowWriter, SampleDepth, writer};
+pub use codec::{ExrCompression, Facts, Header, Options, RowWriter, SampleDepth, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;
 pub use format::Format;
-pub use input::{Limits, decode, read, read_metadata, read_within};
+pub use input::{Limits, decode, inspect, read, read_within};
 pub use output::{Destination, create, to_standard_output, write_image};
 pub use tone::{AnyCurve, Tone};

@@ -1,9 +1,9 @@
 //! Where bytes go: files (replaced only by finished ones), devices, standard output, memory.
 
-use crate::atomic::AtomicFile;
+use crate::atomic::{AtomicFile, is_passage};
 use crate::{Format, Header, ImageError, RowWriter, writer};
 use juggler_math::{Image, Rgb};
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
 
@@ -82,7 +82,7 @@ impl Seek for Held {
 pub fn create(path: &Path, format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     let name = path.display().to_string();
     let failed = |source| ImageError::Write { place: name.clone(), source };
-    if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+    if is_passage(path) {
         let device = File::options().write(true).open(path).map_err(failed)?;
         return writer(format, Destination::stream(name, BufWriter::new(device)), header);
     }

@@ -5,8 +5,8 @@ mod common;
 use common::{encode, encode_by, header, picture, read};
 use juggler_imaging::tone::Gamma;
 use juggler_imaging::{
-    AnyCurve, Destination, ExrCompression, Format, Header, ImageError, Options, SampleDepth, Tone, compare, create,
-    read_metadata, write_image, writer,
+    AnyCurve, Destination, ExrCompression, Facts, Format, Header, ImageError, Options, SampleDepth, Tone, compare,
+    create, inspect, write_image, writer,
 };
 use juggler_math::{Image, Rgb};
 use std::path::Path;
@@ -157,7 +157,7 @@ fn metadata_is_read_back_in_order() {
         let image = picture(9, 9, 1.0);
         let header = Header { metadata: metadata.clone(), ..header(&image) };
         write_image(create(&path, format, &header).unwrap(), &image).unwrap();
-        assert_eq!(read_metadata(&path).unwrap(), metadata, "{format}");
+        assert_eq!(inspect(&path).unwrap(), Facts { format, width: 9, height: 9, metadata: metadata.clone() });
     }
     let path = folder.path().join("unicode.png");
     let image = picture(9, 9, 1.0);
@@ -165,11 +165,22 @@ fn metadata_is_read_back_in_order() {
     for format in [Format::Png, Format::Exr] {
         let header = Header { metadata: text.clone(), ..header(&image) };
         write_image(create(&path, format, &header).unwrap(), &image).unwrap();
-        assert_eq!(read_metadata(&path).unwrap(), text);
+        assert_eq!(inspect(&path).unwrap().metadata, text);
         assert_eq!(juggler_imaging::read(&path).unwrap().width(), 9);
     }
     let long = Header { metadata: vec![("k".repeat(60), "v".into())], ..header(&image) };
     assert_eq!(read(&encode(Format::Exr, &image, &long)), image);
+}
+
+#[test]
+fn sizes_are_read_without_the_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    for format in Format::ALL {
+        let path = folder.path().join("file");
+        let image = picture(33, 7, 1.0);
+        std::fs::write(&path, encode(format, &image, &header(&image))).unwrap();
+        assert_eq!(inspect(&path).unwrap(), Facts { format, width: 33, height: 7, metadata: Vec::new() });
+    }
 }
 
 #[test]
@@ -203,8 +214,9 @@ fn full_disks_are_reported_with_their_place() {
     if !Path::new("/dev/full").exists() {
         return;
     }
-    let image = picture(300, 300, 1.0);
-    for format in Format::ALL {
+    // The small picture fits into every buffer: its only write is the last one.
+    for (format, edge) in Format::ALL.into_iter().flat_map(|format| [(format, 3), (format, 300)]) {
+        let image = picture(edge, edge, 1.0);
         let result = create(Path::new("/dev/full"), format, &header(&image)).and_then(|rows| write_image(rows, &image));
         let message = result.unwrap_err().to_string();
         assert!(message.contains("/dev/full") && message.contains("cannot be written"), "{format}: {message}");

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{encode, header, picture};
-use juggler_imaging::{Format, Header, ImageError, Limits, Options, decode, read, read_metadata};
+use juggler_imaging::{Format, Header, ImageError, Limits, Options, decode, inspect, read};
 use juggler_math::testing::Random;
 use std::io::Cursor;
 use std::path::Path;
@@ -71,7 +71,7 @@ fn metadata_of_mutated_and_cut_files_never_panics() {
                 bytes[at] = random.bits() as u8;
             }
             std::fs::write(&path, &bytes).unwrap();
-            let _ = read_metadata(&path);
+            let _ = inspect(&path);
         }
     }
 }

@@ -2,7 +2,7 @@
 //! are scene-referred and no tone curve applies. The header is written here, in a fixed order, since the bytes of
 //! equal pictures must be equal; blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
 
-use super::{ExrCompression, Header, ReadSeek, RowWriter, SampleDepth, Source};
+use super::{ExrCompression, Header, Inspected, ReadSeek, RowWriter, SampleDepth, Source};
 use crate::output::{Destination, WriteSeek};
 use crate::{Format, ImageError};
 use exr::block::{BlockIndex, UncompressedBlock};
@@ -197,19 +197,26 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, pixels)
 }
 
-/// Attributes that are texts, in the file's order.
-pub(super) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
-    text_attributes(bytes).map_err(|e| source.failed(e))
+/// Size, and attributes that are texts, in the file's order.
+pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
+    let (window, texts) = attributes(bytes).map_err(|e| source.failed(e))?;
+    let [left, top, right, bottom] = window;
+    let [width, height] = [(left, right), (top, bottom)].map(|(first, last)| u64::try_from(last - first + 1));
+    let (Ok(width), Ok(height)) = (width, height) else {
+        return Err(source.malformed("its data window is inside out"));
+    };
+    Ok((source.size(width, height)?, texts))
 }
 
-fn text_attributes(bytes: &mut dyn ReadSeek) -> io::Result<Vec<(String, String)>> {
-    let mut texts = Vec::new();
+/// The data window's left, top, right and bottom, and all texts.
+fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Vec<(String, String)>)> {
+    let (mut window, mut texts) = ([0, 0, -1, -1], Vec::new());
     let mut eight = [0; 8];
     bytes.read_exact(&mut eight)?;
     for _ in 0..10_000 {
         let name = name(bytes)?;
         if name.is_empty() {
-            return Ok(texts);
+            return Ok((window, texts));
         }
         let kind = self::name(bytes)?;
         let mut size = [0; 4];
@@ -221,6 +228,10 @@ fn text_attributes(bytes: &mut dyn ReadSeek) -> io::Result<Vec<(String, String)>
         }
         if kind == "string" {
             texts.push((name, String::from_utf8_lossy(&value).into_owned()));
+        } else if name == "dataWindow" {
+            for (edge, four) in window.iter_mut().zip(value.chunks_exact(4)) {
+                *edge = four.iter().rev().fold(0_i32, |number, byte| number << 8 | i32::from(*byte)).into();
+            }
         }
     }
     Err(io::Error::new(io::ErrorKind::InvalidData, "it has too many attributes"))

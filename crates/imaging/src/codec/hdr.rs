@@ -2,7 +2,7 @@
 //! exponent, rows packed by runs. Mantissas are rounded, not cut off, and read back without half a step added,
 //! as most programs do: the relative error is at most 1/256 of the largest channel.
 
-use super::{Header, ReadSeek, RowWriter, Source};
+use super::{Header, Inspected, ReadSeek, RowWriter, Source};
 use crate::ImageError;
 use crate::output::Destination;
 use juggler_math::{Image, Rgb};
@@ -117,11 +117,23 @@ fn power_of_two(n: i32) -> f32 {
 /// A Radiance picture in RGB, rows from the top; packed or flat.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let lines = head(source, bytes)?;
+    let (width, height) = size(source, &lines)?;
     if let Some(format) = lines.iter().find_map(|l| l.strip_prefix("FORMAT=")).filter(|f| *f != "32-bit_rle_rgbe") {
         return Err(source.malformed(format!("pixels are `{format}`, only 32-bit_rle_rgbe is read")));
     }
     let exposures = lines.iter().filter_map(|l| l.strip_prefix("EXPOSURE=")).filter_map(|v| v.trim().parse().ok());
     let exposure: f32 = exposures.filter(|&v: &f32| v > 0.0 && v.is_finite()).product();
+    let mut pixels = Vec::new();
+    let mut planes = Vec::new();
+    for _ in 0..height {
+        read_row(source, bytes, width as usize, &mut planes)?;
+        pixels.extend(planes.chunks_exact(4).map(|p| from_rgbe([p[0], p[1], p[2], p[3]]) / exposure));
+    }
+    source.image(width, height, pixels)
+}
+
+/// What the last line says.
+fn size(source: Source, lines: &[String]) -> Result<(u32, u32), ImageError> {
     let last = lines.last().map(String::as_str).unwrap_or_default();
     let words: Vec<&str> = last.split_ascii_whitespace().collect();
     let (width, height) = match words.as_slice() {
@@ -131,14 +143,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let (Ok(width), Ok(height)) = (width, height) else {
         return Err(source.malformed(format!("its size says `{last}`")));
     };
-    let (width, height) = source.size(width, height)?;
-    let mut pixels = Vec::new();
-    let mut planes = Vec::new();
-    for _ in 0..height {
-        read_row(source, bytes, width as usize, &mut planes)?;
-        pixels.extend(planes.chunks_exact(4).map(|p| from_rgbe([p[0], p[1], p[2], p[3]]) / exposure));
-    }
-    source.image(width, height, pixels)
+    source.size(width, height)
 }
 
 /// The lines up to and with the size; the empty one is left out.
@@ -210,9 +215,10 @@ fn unpack_plane(bytes: &mut dyn BufRead, width: usize, mut put: impl FnMut(u8) -
     Ok(())
 }
 
-/// The `key=value` lines, but those of the format itself.
-pub(super) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
-    let pairs =
-        head(source, bytes)?.into_iter().filter_map(|l| l.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned())));
-    Ok(pairs.filter(|(key, _)| key != "FORMAT" && key != "EXPOSURE").collect())
+/// Size, and the `key=value` lines but those of the format itself.
+pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
+    let lines = head(source, bytes)?;
+    let size = size(source, &lines)?;
+    let pairs = lines.iter().filter_map(|l| l.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned())));
+    Ok((size, pairs.filter(|(key, _)| key != "FORMAT" && key != "EXPOSURE").collect()))
 }

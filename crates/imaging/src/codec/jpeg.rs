@@ -8,9 +8,13 @@ use crate::{Format, ImageError};
 use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
 use juggler_math::{Image, Rgb};
 use std::io::{Cursor, Read, Write};
+use zune_core::bytestream::ZByteReaderTrait;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
+
+/// Where the size is looked for: profiles and previews may stand before it.
+const HEAD_BYTES: u64 = 16 << 20;
 
 /// Gathers rows and encodes them at the end.
 pub(super) struct Writer {
@@ -57,24 +61,38 @@ impl RowWriter for Writer {
 
 /// Any baseline or progressive JPEG, taken as sRGB.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let side = Format::Jpeg.longest_side() as usize;
-    let options = DecoderOptions::new_safe()
-        .set_max_width(side)
-        .set_max_height(side)
-        .set_strict_mode(true)
-        .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut file = Vec::new();
     let most_bytes = source.limits.most_pixels.saturating_mul(4).saturating_add(1 << 24);
     bytes.take(most_bytes).read_to_end(&mut file).map_err(|e| source.failed(e))?;
     if !is_complete(&file) {
         return Err(source.malformed("it ends too early"));
     }
-    let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options);
-    decoder.decode_headers().map_err(|e| source.malformed(e.to_string()))?;
-    let info = decoder.info().ok_or_else(|| source.malformed("it has no size"))?;
-    let (width, height) = source.size(u64::from(info.width), u64::from(info.height))?;
+    let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options());
+    let (width, height) = decoded_size(source, &mut decoder)?;
     let bytes = decoder.decode().map_err(|e| source.malformed(e.to_string()))?;
     source.image(width, height, super::pixels_from_srgb(&bytes))
+}
+
+fn options() -> DecoderOptions {
+    let side = Format::Jpeg.longest_side() as usize;
+    DecoderOptions::new_safe()
+        .set_max_width(side)
+        .set_max_height(side)
+        .set_strict_mode(true)
+        .jpeg_set_out_colorspace(ColorSpace::RGB)
+}
+
+fn decoded_size<T: ZByteReaderTrait>(source: Source, decoder: &mut JpegDecoder<T>) -> Result<(u32, u32), ImageError> {
+    decoder.decode_headers().map_err(|e| source.malformed(e.to_string()))?;
+    let info = decoder.info().ok_or_else(|| source.malformed("it has no size"))?;
+    source.size(u64::from(info.width), u64::from(info.height))
+}
+
+/// Width and height, which stand in the first bytes.
+pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
+    let mut start = Vec::new();
+    bytes.take(HEAD_BYTES).read_to_end(&mut start).map_err(|e| source.failed(e))?;
+    decoded_size(source, &mut JpegDecoder::new_with_options(Cursor::new(&start), options()))
 }
 
 /// Whether an end follows the last scan: the decoder itself fills up what is missing with grey. Neither marker

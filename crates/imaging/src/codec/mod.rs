@@ -187,15 +187,34 @@ pub(crate) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     }
 }
 
-/// Reads a picture's texts; none for formats that we write none to.
-pub(crate) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
-    match source.format {
-        Format::Png => png::read_metadata(source, bytes),
-        Format::Exr => exr::read_metadata(source, bytes),
-        Format::Hdr => hdr::read_metadata(source, bytes),
-        Format::Jpeg | Format::Webp | Format::Pfm => Ok(Vec::new()),
-    }
+/// What a picture file says before its pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Facts {
+    /// The format, by the first bytes.
+    pub format: Format,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Texts by key, in order; none in formats that we write none to.
+    pub metadata: Vec<(String, String)>,
 }
+
+/// Reads a picture's size and texts, and no pixels.
+pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Facts, ImageError> {
+    let ((width, height), metadata) = match source.format {
+        Format::Png => png::inspect(source, bytes)?,
+        Format::Exr => exr::inspect(source, bytes)?,
+        Format::Hdr => hdr::inspect(source, bytes)?,
+        Format::Jpeg => (jpeg::size(source, bytes)?, Vec::new()),
+        Format::Webp => (webp::size(source, bytes)?, Vec::new()),
+        Format::Pfm => (pfm::size(source, bytes)?, Vec::new()),
+    };
+    Ok(Facts { format: source.format, width, height, metadata })
+}
+
+/// Width and height, and texts by key.
+type Inspected = ((u32, u32), Vec<(String, String)>);
 
 /// Linear light of the 256 levels of sRGB: by the curve that wrote them, so that equal levels are equal light
 /// whatever the format.

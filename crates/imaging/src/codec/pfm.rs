@@ -76,6 +76,12 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     source.image(width, height, rows.concat())
 }
 
+/// Width and height.
+pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
+    let head = head(source, bytes)?;
+    source.size(head.width, head.height)
+}
+
 struct Head {
     grey: bool,
     width: u64,

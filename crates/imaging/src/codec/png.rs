@@ -1,17 +1,19 @@
 //! PNG: 8 or 16 bits a channel, streamed; the curve stands in sRGB or gAMA and cHRM chunks, texts in tEXt
 //! or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
 
-use super::{Header, ReadSeek, RowWriter, Source};
+use super::{Header, Inspected, ReadSeek, RowWriter, Source};
 use crate::ImageError;
 use crate::output::Destination;
 use crate::tone::{AnyCurve, Curve, Gamma, Quantizer, Srgb};
 use juggler_math::{Image, Rgb};
 use png::{BitDepth, ColorType, DecodingError, EncodingError, ScaledFloat, SourceChromaticities, StreamWriter};
-use std::io::Write;
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Streams rows into a PNG.
 pub(super) struct Writer {
-    stream: StreamWriter<'static, Box<dyn Write + Send>>,
+    stream: StreamWriter<'static, Sink>,
+    sink: Sink,
     quantizer: Quantizer,
     words: bool,
     bytes: Vec<u8>,
@@ -22,9 +24,10 @@ impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
         let place = destination.name().to_owned();
         let words = header.options.png_16_bit;
-        let stream = stream(destination, header).map_err(|e| failed(&place, e))?;
+        let sink = Sink::new(destination);
+        let stream = stream(sink.clone(), header).map_err(|e| failed(&place, e))?;
         let quantizer = Quantizer::new(&header.tone, if words { u16::MAX } else { 255 });
-        Ok(Self { stream, quantizer, words, bytes: Vec::new(), place })
+        Ok(Self { stream, sink, quantizer, words, bytes: Vec::new(), place })
     }
 }
 
@@ -44,16 +47,52 @@ impl RowWriter for Writer {
     }
 
     fn finish(self: Box<Self>) -> Result<(), ImageError> {
-        self.stream.finish().map_err(|e| failed(&self.place, e))
+        let Self { stream, sink, place, .. } = *self;
+        stream.finish().map_err(|e| failed(&place, e))?;
+        sink.finish().map_err(|e| failed(&place, EncodingError::IoError(e)))
+    }
+}
+
+/// The encoder writes its last chunk while it is dropped, and tells nobody when that fails: this remembers.
+#[derive(Clone)]
+struct Sink(Arc<Mutex<Outlet>>);
+
+struct Outlet {
+    bytes: Box<dyn Write + Send>,
+    failure: Option<io::Error>,
+}
+
+impl Sink {
+    fn new(destination: Destination) -> Self {
+        Self(Arc::new(Mutex::new(Outlet { bytes: destination.into_stream(), failure: None })))
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
+        let mut outlet = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        act(&mut outlet.bytes).inspect_err(|error| outlet.failure = Some(error.kind().into()))
+    }
+
+    /// After the encoder is gone: whether all was written.
+    fn finish(self) -> io::Result<()> {
+        self.with(|bytes| bytes.flush())?;
+        let mut outlet = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        outlet.failure.take().map_or(Ok(()), Err)
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.with(|sink| sink.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.with(|sink| sink.flush())
     }
 }
 
 /// The file up to its pixels.
-fn stream(
-    destination: Destination,
-    header: &Header,
-) -> Result<StreamWriter<'static, Box<dyn Write + Send>>, EncodingError> {
-    let mut encoder = png::Encoder::new(destination.into_stream(), header.width, header.height);
+fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, EncodingError> {
+    let mut encoder = png::Encoder::new(sink, header.width, header.height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(if header.options.png_16_bit { BitDepth::Sixteen } else { BitDepth::Eight });
     encoder.set_compression(png::Compression::Fast);
@@ -167,11 +206,12 @@ impl<'a> Row<'a> {
     }
 }
 
-/// The texts, in order: tEXt before iTXt.
-pub(super) fn read_metadata(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<(String, String)>, ImageError> {
+/// Size and texts, in order: tEXt before iTXt.
+pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
     let reader = png::Decoder::new(&mut *bytes).read_info().map_err(|e| unreadable(source, e))?;
     let info = reader.info();
     let plain = info.uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
     let wide = info.utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap_or_default()));
-    Ok(plain.chain(wide).collect())
+    let size = source.size(u64::from(info.width), u64::from(info.height))?;
+    Ok((size, plain.chain(wide).collect()))
 }

@@ -48,19 +48,28 @@ impl RowWriter for Writer {
 
 /// Any still WebP, lossless or lossy, taken as sRGB; alpha is left out.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let unreadable = |error: DecodingError| match error {
-        DecodingError::IoError(error) => source.failed(error),
-        other => source.malformed(other.to_string()),
-    };
-    let mut decoder = WebPDecoder::new(&mut *bytes).map_err(unreadable)?;
+    let mut decoder = WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?;
     let (width, height) = decoder.dimensions();
     let (width, height) = source.size(u64::from(width), u64::from(height))?;
     let samples = if decoder.has_alpha() { 4 } else { 3 };
     let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
     let mut bytes = vec![0; size];
-    decoder.read_image(&mut bytes).map_err(unreadable)?;
+    decoder.read_image(&mut bytes).map_err(|e| unreadable(source, e))?;
     if samples == 4 {
         bytes = bytes.chunks_exact(4).flat_map(|c| [c[0], c[1], c[2]]).collect();
     }
     source.image(width, height, super::pixels_from_srgb(&bytes))
+}
+
+/// Width and height.
+pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
+    let (width, height) = WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?.dimensions();
+    source.size(u64::from(width), u64::from(height))
+}
+
+fn unreadable(source: Source, error: DecodingError) -> ImageError {
+    match error {
+        DecodingError::IoError(error) => source.failed(error),
+        other => source.malformed(other.to_string()),
+    }
 }
