@@ -1,25 +1,30 @@
 //! Animation: a tree with expressions becomes, for one frame, a tree with numbers. The rest of the program
 //! only ever sees still scenes.
 
-use crate::document::{Member, Node, Place, Sources, Value};
+use crate::document::{Member, Members, Node, Place, Sources, Value};
 use crate::expression::{self, ExpressionError, FUNCTIONS, Names};
-use crate::path::{Path, Step};
+use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest;
+use std::sync::Arc;
 
 /// Parts of a scene in which a text that begins with `=` is just a text, or comes before all numbers.
 const PLAIN: [&str; 4] = ["title", "description", "animation", "variables"];
 /// Names that every expression may use.
 const GIVEN: [&str; 4] = ["frame", "frames", "seconds", "pi"];
 
-/// The tree at a frame (which may lie between two), with every mistake in an expression.
+/// The tree at a frame (which may lie between two), with every mistake in an expression. What holds no expression
+/// is shared with `tree`.
 pub fn resolve(tree: &Node, sources: &Sources, frame: f64) -> (Node, Vec<Finding>) {
-    let mut walk = Walk { names: given(tree, frame), sources, path: Path::root(), findings: Vec::new() };
-    walk.variables(tree);
+    let mut walk = Walk { names: given(tree, frame), variables: tree.get("variables"), sources, findings: Vec::new() };
+    walk.variables();
     let mut resolved = tree.clone();
     if let Value::Object(members) = &mut resolved.value {
+        let members = Arc::make_mut(members);
         for (key, member) in members.iter_mut().filter(|(key, _)| !PLAIN.contains(&key.as_str())) {
-            walk.step(Step::Key(key.clone()), &mut member.node);
+            if let Some(node) = walk.node(&member.node, &Trail::Root.key(key)) {
+                member.node = node;
+            }
         }
         members.shift_remove("variables");
     }
@@ -42,81 +47,94 @@ fn given(tree: &Node, frame: f64) -> Names {
 }
 
 struct Walk<'s> {
+    /// What can be used so far.
     names: Names,
+    variables: Option<&'s Node>,
     sources: &'s Sources,
-    path: Path,
     findings: Vec<Finding>,
 }
 
 impl Walk<'_> {
-    fn variables(&mut self, tree: &Node) {
-        let Some(variables) = tree.get("variables") else { return };
+    fn variables(&mut self) {
+        let Some(variables) = self.variables else { return };
+        let at = Trail::Root.key("variables");
         if !matches!(variables.value, Value::Object(_)) {
             let message = format!("expected an object of named numbers, found {}", variables.kind());
-            self.findings.push(Finding::error(message).at(&Path::root().key("variables")).on(variables.place));
+            self.findings.push(Finding::error(message).at(&at).on(variables.place));
         }
         for (name, member) in variables.members() {
-            self.path = Path::root().key("variables").key(name.as_str());
             // After a mistake the name still exists, so that it is reported once only.
-            let value = self.variable(name, member).unwrap_or(1.0);
+            let value = self.variable(name, member, &at.key(name)).unwrap_or(1.0);
             self.names.insert(name.clone(), value);
         }
-        self.path = Path::root();
     }
 
-    fn variable(&mut self, name: &str, member: &Member) -> Option<f64> {
+    fn variable(&mut self, name: &str, member: &Member, at: &Trail<'_>) -> Option<f64> {
         if let Some(message) = unusable(name) {
-            self.findings.push(Finding::error(message).at(&self.path).on(member.key_place));
+            self.findings.push(Finding::error(message).at(at).on(member.key_place));
             return None;
         }
         match &member.node.value {
             Value::Number(number) => number.as_f64(),
-            Value::String(text) => self.evaluate(text, member.node.place),
+            Value::String(text) => self.evaluate(text, member.node.place, at),
             _ => {
                 let message = format!("expected a number or an expression, found {}", member.node.kind());
-                self.findings.push(Finding::error(message).at(&self.path).on(member.node.place));
+                self.findings.push(Finding::error(message).at(at).on(member.node.place));
                 None
             }
         }
     }
 
-    fn node(&mut self, node: &mut Node) {
-        match &mut node.value {
-            Value::String(text) if text.starts_with('=') => {
-                // After a mistake any number will do: this one passes most limits.
-                let value = self.evaluate(text, node.place).unwrap_or(1.0);
-                node.value = number(value);
-            }
-            Value::Array(elements) => {
-                elements.iter_mut().enumerate().for_each(|(i, element)| self.step(Step::Index(i), element));
-            }
-            Value::Object(members) => {
-                members.iter_mut().for_each(|(key, member)| self.step(Step::Key(key.clone()), &mut member.node));
-            }
-            _ => {}
-        }
+    /// The node with numbers for expressions; nothing when it has none and can stay as it is.
+    fn node(&mut self, node: &Node, at: &Trail<'_>) -> Option<Node> {
+        let value = match &node.value {
+            // After a mistake any number will do: this one passes most limits.
+            Value::String(text) if text.starts_with('=') => number(self.evaluate(text, node.place, at).unwrap_or(1.0)),
+            Value::Array(elements) => Value::Array(self.array(elements, at)?),
+            Value::Object(members) => Value::Object(self.object(members, at)?),
+            _ => return None,
+        };
+        Some(Node { place: node.place, value })
     }
 
-    fn step(&mut self, step: Step, node: &mut Node) {
-        if matches!(node.value, Value::Number(_) | Value::Bool(_) | Value::Null) {
-            return;
+    fn array(&mut self, elements: &Arc<Vec<Node>>, at: &Trail<'_>) -> Option<Arc<Vec<Node>>> {
+        let mut resolved = None;
+        for (i, element) in elements.iter().enumerate() {
+            if let Some(node) = self.node(element, &at.index(i)) {
+                Arc::make_mut(resolved.get_or_insert_with(|| Arc::clone(elements)))[i] = node;
+            }
         }
-        self.path.push(step);
-        self.node(node);
-        self.path.pop();
+        resolved
     }
 
-    fn evaluate(&mut self, text: &str, place: Option<Place>) -> Option<f64> {
+    fn object(&mut self, members: &Arc<Members>, at: &Trail<'_>) -> Option<Arc<Members>> {
+        let mut resolved = None;
+        for (i, (key, member)) in members.iter().enumerate() {
+            if let Some(node) = self.node(&member.node, &at.key(key)) {
+                Arc::make_mut(resolved.get_or_insert_with(|| Arc::clone(members)))[i].node = node;
+            }
+        }
+        resolved
+    }
+
+    fn evaluate(&mut self, text: &str, place: Option<Place>, at: &Trail<'_>) -> Option<f64> {
         let expression = text.strip_prefix('=').unwrap_or(text);
         match expression::evaluate(expression, &self.names) {
             Ok(value) => Some(value),
             Err(error) => {
                 let place = place.map(|place| self.inside(place, text, expression, &error));
-                let finding = Finding::error(error.message).at(&self.path).on(place);
-                self.findings.push(finding.maybe_help(error.help));
+                let help = self.too_early(expression, &error).or(error.help);
+                self.findings.push(Finding::error(error.message).at(at).on(place).maybe_help(help));
                 None
             }
         }
+    }
+
+    /// What to do when an expression uses a variable that is only defined below.
+    fn too_early(&self, expression: &str, error: &ExpressionError) -> Option<String> {
+        let name = expression.get(error.at.clone())?;
+        let later = self.variables?.get(name).is_some() && !self.names.contains_key(name);
+        later.then(|| format!("`{name}` is defined further down: move it before what uses it"))
     }
 
     /// The part of a string at fault, when the string stands in the file as it is (no escapes in it).

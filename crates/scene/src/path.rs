@@ -24,13 +24,13 @@ impl Path {
     /// One step further, into an object.
     #[must_use]
     pub fn key(&self, key: impl Into<String>) -> Self {
-        self.step(Step::Key(key.into()))
+        self.clone().step(Step::Key(key.into()))
     }
 
     /// One step further, into an array.
     #[must_use]
     pub fn index(&self, index: usize) -> Self {
-        self.step(Step::Index(index))
+        self.clone().step(Step::Index(index))
     }
 
     /// Further by a written path such as `vertices[3].x`, which the tracer's own errors name.
@@ -58,10 +58,71 @@ impl Path {
         self.0.pop();
     }
 
-    fn step(&self, step: Step) -> Self {
-        let mut path = self.clone();
-        path.0.push(step);
-        path
+    fn step(mut self, step: Step) -> Self {
+        self.0.push(step);
+        self
+    }
+}
+
+/// A path on the stack of a recursive walk: each step knows the one before. Costs nothing until something is
+/// wrong and it becomes a [`Path`].
+#[derive(Clone, Copy, Debug)]
+pub enum Trail<'t> {
+    /// The top of the scene.
+    Root,
+    /// Into an object, by key.
+    Key(&'t Trail<'t>, &'t str),
+    /// Into an array, by position.
+    Index(&'t Trail<'t>, usize),
+}
+
+impl<'t> Trail<'t> {
+    /// One step further, into an object.
+    #[must_use]
+    pub fn key(&'t self, key: &'t str) -> Self {
+        Self::Key(self, key)
+    }
+
+    /// One step further, into an array.
+    #[must_use]
+    pub fn index(&'t self, index: usize) -> Self {
+        Self::Index(self, index)
+    }
+
+    /// Further by a written path, as [`Path::join`].
+    #[must_use]
+    pub fn join(&self, written: &str) -> Path {
+        Path::from(self).join(written)
+    }
+
+    /// Whether it is the top of the scene.
+    pub fn is_root(&self) -> bool {
+        matches!(self, Self::Root)
+    }
+
+    /// The last key on the way.
+    pub fn last_key(&self) -> Option<&'t str> {
+        match self {
+            Self::Root => None,
+            Self::Key(_, key) => Some(key),
+            Self::Index(parent, _) => parent.last_key(),
+        }
+    }
+}
+
+impl From<&Trail<'_>> for Path {
+    fn from(trail: &Trail<'_>) -> Self {
+        match trail {
+            Trail::Root => Self::root(),
+            Trail::Key(parent, key) => Self::from(*parent).step(Step::Key((*key).to_owned())),
+            Trail::Index(parent, index) => Self::from(*parent).step(Step::Index(*index)),
+        }
+    }
+}
+
+impl From<&Self> for Path {
+    fn from(path: &Self) -> Self {
+        path.clone()
     }
 }
 
@@ -92,5 +153,9 @@ mod tests {
         let path = Path::root().key("objects").index(3).key("shape").key("my sphere").join("vertices[7].x");
         assert_eq!(path.to_string(), "objects[3].shape[\"my sphere\"].vertices[7].x");
         assert_eq!(Path::root().to_string(), "");
+        let objects = Trail::Root.key("objects");
+        let trail = objects.index(3);
+        assert_eq!(Path::from(&trail.key("shape")).to_string(), "objects[3].shape");
+        assert_eq!(trail.index(4).last_key(), Some("objects"));
     }
 }

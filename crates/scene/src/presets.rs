@@ -1,5 +1,6 @@
 //! Scenes that are part of the program.
 
+use crate::document::{FileId, parse};
 use crate::scene::{Scene, SceneError};
 use crate::suggest::meant_or_all;
 
@@ -8,29 +9,57 @@ use crate::suggest::meant_or_all;
 pub struct BuiltIn {
     /// What it is called on the command line.
     pub name: &'static str,
-    /// What is to be seen, in a sentence.
-    pub description: &'static str,
     /// The scene file.
     pub json: &'static str,
 }
 
-/// Every built-in scene, by name.
-const BUILT_IN: &[BuiltIn] = &[
-    BuiltIn {
-        name: "juggler",
-        description: "The Amiga's Juggler of 1986: three mirror balls juggled above a checkered plain, 30 frames",
-        json: include_str!("../../../scenes/juggler.json"),
-    },
-    BuiltIn {
-        name: "one-sphere",
-        description: "The smallest scene: one object, everything else is a default",
-        json: include_str!("../../../scenes/one-sphere.json"),
-    },
-];
+/// The files in `scenes/` by name, in the order in which they are listed.
+macro_rules! built_in {
+    ($($name:literal),+ $(,)?) => {
+        &[$(BuiltIn { name: $name, json: include_str!(concat!("../../../scenes/", $name, ".json")) }),+]
+    };
+}
+
+/// Every built-in scene: one line for each file.
+const BUILT_IN: &[BuiltIn] = built_in! {
+    "chess",
+    "cornell-cube",
+    "depth-of-field",
+    "first-render",
+    "four-spheres-mirrors",
+    "juggler",
+    "one-sphere",
+    "red-cube",
+    "six-mirror-spheres",
+    "sphere-lights",
+    "sphere-triangle-shadow",
+    "step-08",
+    "step-09",
+    "step-10",
+    "step-11",
+    "step-12",
+    "step-12b",
+    "step-13",
+    "step-13-mirror",
+    "step-13c",
+    "transparent-shadow",
+    "triangle-lights",
+    "two-spheres-mirrored",
+    "two-spheres-refraction",
+};
 
 /// The scenes that are part of the program.
 pub fn built_in_scenes() -> &'static [BuiltIn] {
     BUILT_IN
+}
+
+impl BuiltIn {
+    /// What is to be seen, in a sentence: the scene file's own `description`.
+    pub fn description(&self) -> String {
+        let tree = parse(self.json, FileId::MAIN).ok();
+        let text = tree.as_ref().and_then(|(tree, _)| tree.get("description")?.as_str());
+        text.unwrap_or_default().to_owned()
+    }
 }
 
 impl Scene {

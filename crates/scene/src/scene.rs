@@ -10,6 +10,7 @@ use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
 use juggler_tracer::texture::AnyTexture;
+use serde::Deserialize;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -194,10 +195,14 @@ fn joined(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
 fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Description> {
     let mut validated = validate(tree);
     findings.append(&mut validated.findings);
-    match serde_path_to_error::deserialize(validated.json?) {
+    let json = validated.json?;
+    if let Ok(description) = Description::deserialize(&json) {
+        return Some(description);
+    }
+    // The schema allows what the types refuse: only a slip of ours can bring us here. Once more, to learn where.
+    match serde_path_to_error::deserialize(json) {
         Ok(description) => Some(description),
         Err(error) => {
-            // The schema allows what the types refuse: only a slip of ours can bring us here.
             let path = crate::path::Path::root().join(&error.path().to_string());
             findings.push(Finding::error(error.into_inner().to_string()).at(&path));
             None

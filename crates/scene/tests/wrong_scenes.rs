@@ -72,7 +72,8 @@ wrong! {
     group_circle: "{\"version\": 1, \"groups\": {\"a\": [{\"group\": \"b\"}], \"b\": [{\"group\": \"a\"}]},\n \"objects\": [{\"group\": \"a\"}]}";
     group_in_itself: "{\"version\": 1, \"groups\": {\"a\": [{\"group\": \"a\"}]}, \"objects\": []}";
     material_circle: with(r#""materials": {"a": {"checkerboard": {"even": "a", "odd": "a"}}}"#);
-    too_many_objects: object(r#"{"objects": [{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [1, 0, 0], "radius": 1}, "count": 100001}}]}"#);
+    chain_too_long: object(r#"{"objects": [{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [1, 0, 0], "radius": 1}, "count": 100001}}]}"#);
+    too_many_objects: object(r#"{"objects": [{"group": "a"}]}"#).replace("\"objects\": [\n", "\"groups\": {\"z\": [{\"shape\": \"sphere\"}], \"b\": [{\"chain\": {\"from\": {\"center\": [0, 0, 0], \"radius\": 1}, \"to\": {\"center\": [1, 0, 0], \"radius\": 1}, \"count\": 100000}}],\n    \"a\": [{\"group\": \"b\"}, {\"group\": \"c\"}], \"c\": [{\"group\": \"d\"}, {\"group\": \"d\"}, {\"group\": \"d\"}],\n    \"d\": [{\"group\": \"e\"}, {\"group\": \"e\"}, {\"group\": \"e\"}, {\"group\": \"e\"}], \"e\": [{\"group\": \"b\"}, {\"group\": \"b\"}, {\"group\": \"b\"}, {\"group\": \"b\"}]},\n  \"objects\": [\n");
     missing_mesh: object(r#"{"shape": {"mesh": {"file": "models/cow.ply"}}}"#);
     mesh_from_nothing: object(r#"{"shape": {"mesh": {}}}"#);
     missing_version: r#"{"objects": [{"shape": "sphere"}]}"#;
@@ -86,7 +87,17 @@ wrong! {
     missing_quotes: "{version: 1}";
     two_values: "{\"version\": 1} {\"version\": 1}";
     duplicate_key: "{\"version\": 1,\n \"objects\": [],\n \"objects\": []}";
-    both_shape_and_group: object(r#"{"shape": "sphere", "group": "a"}"#);
+    both_shape_and_group: "{\"version\": 1, \"groups\": {\"a\": []},\n \"objects\": [{\"shape\": \"sphere\", \"group\": \"a\"}]}";
+    two_kinds_at_once: object(r#"{"shape": {"sphere": {}, "cuboid": {}}}"#);
+    material_inside_the_shape: object(r#"{"shape": {"sphere": {"radius": 1}, "material": "red"}}"#);
+    no_kind_at_all: object(r#"{"shape": {}}"#);
+    true_in_capitals: with(r#""materials": {"a": {"phong": {"fresnel": True}}}"#);
+    two_numbers_and_a_key_that_cannot_be: "{\"version\": 1,\n \"objects\": [{\"shape\": {\"sphere\": {\"radius\": 1e999}}},\n  {\"shape\": {\"sphere\": {\"radius\": 0, \"radius\": 1}}}]}";
+    hex_number: with(r#""background": 0xff8800"#);
+    spot_wider_than_its_edge: with(r#""lights": [{"spot": {"beam_degrees": 50, "cutoff_degrees": 20}}]"#);
+    dome_without_a_radius: with(r#""background": {"dome": {"radius": 0}}"#);
+    point_that_shines_nowhere: with(r#""lights": [{"point": {"attenuation": {"constant": 0, "quadratic": 0}}}]"#);
+    direction_without_length: with(r#""lights": [{"directional": {"direction": [0, 0, 0]}}]"#);
     neither_shape_nor_group: object(r#"{"name": "nothing"}"#);
     eye_at_what_it_looks_at: with(r#""camera": {"perspective": {"eye": [1, 2, 3], "look_at": [1, 2, 3]}}"#);
     two_fields_of_view: with(r#""camera": {"perspective": {"vertical_fov_degrees": 40, "horizontal_fov_degrees": 60}}"#);
@@ -147,20 +158,23 @@ fn mistakes_in_an_included_file_are_found_there() {
         b"{\"version\": 1,\n \"object\": [],\n \"objects\": [{\"shape\": \"sphere\"},\n   {\"shape\": {\"sphere\": {\"radius\": 0}}}]}",
     );
     let text = "{\"version\": 1, \"include\": \"more.json\", \"objects\": [{\"shape\": {\"cuboid\": {\"min\": [1, 1, 1], \"max\": [0, 0, 0]}}}]}";
-    insta::assert_snapshot!(report(text, &[other]));
+    insta::assert_snapshot!("included_twice_wrong", report(text, &[other]));
     let fixed: (&str, &[u8]) = (
         "more.json",
         b"{\"version\": 1,\n \"objects\": [{\"shape\": \"sphere\"},\n   {\"shape\": {\"sphere\": {\"radius\": 0}}}]}",
     );
-    insta::assert_snapshot!(report(text, &[fixed]));
+    insta::assert_snapshot!("included_once_wrong", report(text, &[fixed]));
 }
 
 #[test]
 fn broken_and_odd_meshes() {
     let broken: (&str, &[u8]) = ("broken.obj", b"v 0 0 0\nv 1 0 zero\n");
-    insta::assert_snapshot!(report(&object(r#"{"shape": {"mesh": {"file": "broken.obj"}}}"#), &[broken]));
+    insta::assert_snapshot!(
+        "broken_mesh",
+        report(&object(r#"{"shape": {"mesh": {"file": "broken.obj"}}}"#), &[broken])
+    );
     let odd: (&str, &[u8]) = ("odd.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
-    insta::assert_snapshot!(report(&object(r#"{"shape": {"mesh": {"file": "odd.obj"}}}"#), &[odd]));
+    insta::assert_snapshot!("odd_mesh", report(&object(r#"{"shape": {"mesh": {"file": "odd.obj"}}}"#), &[odd]));
 }
 
 #[test]

@@ -9,6 +9,6 @@ pub fn run() -> Result<(), Failure> {
     let scenes = built_in_scenes();
     let width = scenes.iter().map(|scene| scene.name.chars().count()).max().unwrap_or(0);
     let lines: Vec<String> =
-        scenes.iter().map(|scene| format!("{:width$}  {}", scene.name, scene.description)).collect();
+        scenes.iter().map(|scene| format!("{:width$}  {}", scene.name, scene.description())).collect();
     console::print(&lines.join("\n"))
 }

@@ -60,7 +60,10 @@ impl<'s> Counter<'s> {
         }
         if let Some(at) = self.open.iter().position(|open| *open == name) {
             let chain: Vec<&str> = self.open.iter().skip(at).copied().chain([name]).collect();
-            let message = format!("groups contain each other in a circle: {}", chain.join(" → "));
+            let message = match chain.as_slice() {
+                [_, _] => format!("the group `{name}` contains itself"),
+                _ => format!("groups contain each other in a circle: {}", chain.join(" → ")),
+            };
             self.findings.push(Finding::error(message).at(path));
             return 0;
         }

@@ -1,7 +1,7 @@
 //! Materials: compiled once each, mistakes charged to the place where they stand.
 
 use crate::description::Description;
-use crate::path::Path;
+use crate::path::{Path, Trail};
 use crate::report::Finding;
 use juggler_tracer::material::{
     AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
@@ -31,7 +31,7 @@ impl Materials {
     }
 
     /// The material that stands at `path`; a plain one where there is a mistake.
-    pub fn get(&mut self, material: &MaterialRef, path: &Path, findings: &mut Vec<Finding>) -> MaterialId {
+    pub fn get(&mut self, material: &MaterialRef, path: &Trail<'_>, findings: &mut Vec<Finding>) -> MaterialId {
         let compiled = match material {
             MaterialRef::Inline(material) => {
                 self.glows |= glows(material);
@@ -40,7 +40,7 @@ impl Materials {
             MaterialRef::Name(_) => self.compiler.material("", material),
         };
         compiled.unwrap_or_else(|error| {
-            findings.push(finding(&error, path));
+            findings.push(finding(&error, &path.into()));
             self.plain()
         })
     }

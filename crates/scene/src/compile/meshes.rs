@@ -2,7 +2,7 @@
 
 use crate::document::{Node, Sources};
 use crate::import::{Fault, ImportError, Imported, Limits, load};
-use crate::path::Path;
+use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
 use juggler_tracer::shape::{Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
@@ -71,11 +71,11 @@ impl Files<'_> {
     }
 
     /// The mesh that a description at `path` means: its own arrays, or those of its file.
-    pub fn mesh(&self, mesh: &Mesh, path: &Path, findings: &mut Vec<Finding>) -> Option<Mesh> {
+    pub fn mesh(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
         let Some(file) = &mesh.file else {
             return Some(mesh.clone());
         };
-        let path = path.key("file");
+        let path = Path::from(path).key("file");
         if let Err(invalid) = mesh.clone().load(MeshData::default()) {
             findings.push(Finding::error(invalid.message).at(&path));
             return None;

@@ -3,7 +3,7 @@
 use super::materials::Materials;
 use super::meshes::Files;
 use crate::description::{Bead, Description, Object, TransformStep};
-use crate::path::Path;
+use crate::path::{Path, Trail};
 use crate::report::Finding;
 use juggler_math::Transform;
 use juggler_tracer::material::MaterialId;
@@ -19,13 +19,13 @@ pub fn place(
     findings: &mut Vec<Finding>,
 ) -> Vec<world::Object> {
     let mut preparing = Preparing { files, materials, findings };
-    let groups = Path::root().key("groups");
+    let groups = Trail::Root.key("groups");
     let groups = scene
         .groups
         .iter()
-        .map(|(name, objects)| (name.as_str(), preparing.objects(objects, &groups.key(name.as_str()))))
+        .map(|(name, objects)| (name.as_str(), preparing.objects(objects, &groups.key(name))))
         .collect();
-    let top = preparing.objects(&scene.objects, &Path::root().key("objects"));
+    let top = preparing.objects(&scene.objects, &Trail::Root.key("objects"));
     let plain = preparing.materials.plain();
     let mut placing = Placing { groups: &groups, placed: Vec::new() };
     placing.all(&top, &Transform::IDENTITY, plain);
@@ -52,11 +52,11 @@ struct Preparing<'m> {
 }
 
 impl Preparing<'_> {
-    fn objects<'s>(&mut self, objects: &'s [Object], path: &Path) -> Vec<Prepared<'s>> {
+    fn objects<'s>(&mut self, objects: &'s [Object], path: &Trail<'_>) -> Vec<Prepared<'s>> {
         objects.iter().enumerate().filter_map(|(i, object)| self.object(object, &path.index(i))).collect()
     }
 
-    fn object<'s>(&mut self, object: &'s Object, path: &Path) -> Option<Prepared<'s>> {
+    fn object<'s>(&mut self, object: &'s Object, path: &Trail<'_>) -> Option<Prepared<'s>> {
         let transform = self.transform(&object.transform, &path.key("transform"));
         let material = object.material.as_ref();
         let material = material.map(|m| self.materials.get(m, &path.key("material"), self.findings));
@@ -65,7 +65,7 @@ impl Preparing<'_> {
     }
 
     /// The one thing that an object is. That it is exactly one has been checked before.
-    fn content<'s>(&mut self, object: &'s Object, path: &Path) -> Option<Content<'s>> {
+    fn content<'s>(&mut self, object: &'s Object, path: &Trail<'_>) -> Option<Content<'s>> {
         if let Some(shape) = &object.shape {
             let shape = self.shape(shape, &path.key("shape"))?;
             Some(Content::Shapes(vec![(Transform::IDENTITY, shape)]))
@@ -78,14 +78,14 @@ impl Preparing<'_> {
         } else if let Some(limb) = &object.limb {
             match limb.beads() {
                 Ok(beads) => Some(self.beads(beads, &path.key("limb"))),
-                Err(message) => self.fail(message, &path.key("limb")),
+                Err(wrong) => self.fail(wrong.message, path.key("limb").join(wrong.field)),
             }
         } else {
             None
         }
     }
 
-    fn shape(&mut self, shape: &AnyShape, path: &Path) -> Option<AnyShape> {
+    fn shape(&mut self, shape: &AnyShape, path: &Trail<'_>) -> Option<AnyShape> {
         let mut shape = match shape {
             AnyShape::Mesh(mesh) => self.files.mesh(mesh, &path.key("mesh"), self.findings)?.into(),
             shape => shape.clone(),
@@ -93,13 +93,13 @@ impl Preparing<'_> {
         match shape.prepare() {
             Ok(()) => Some(shape),
             Err(invalid) => {
-                let path = path.key(crate::kind::name_of(&shape)).join(&invalid.field);
+                let path = path.key(&crate::kind::name_of(&shape)).join(&invalid.field);
                 self.fail(invalid.message, &path)
             }
         }
     }
 
-    fn beads<'s>(&mut self, beads: impl IntoIterator<Item = Bead>, path: &Path) -> Content<'s> {
+    fn beads<'s>(&mut self, beads: impl IntoIterator<Item = Bead>, path: &Trail<'_>) -> Content<'s> {
         let mut shapes = Vec::new();
         for Bead { center, radius } in beads {
             let sphere = Sphere { radius };
@@ -110,22 +110,22 @@ impl Preparing<'_> {
         Content::Shapes(shapes)
     }
 
-    fn transform(&mut self, steps: &[TransformStep], path: &Path) -> Option<Transform> {
+    fn transform(&mut self, steps: &[TransformStep], path: &Trail<'_>) -> Option<Transform> {
         let mut whole = Transform::IDENTITY;
         let mut sound = true;
         for (i, step) in steps.iter().enumerate() {
             match step.transform() {
                 Ok(next) => whole = whole.then(&next),
-                Err(message) => {
+                Err(wrong) => {
                     sound = false;
-                    self.fail::<()>(message, &path.index(i).key(step.key()));
+                    self.fail::<()>(wrong.message, path.index(i).join(wrong.field));
                 }
             }
         }
         sound.then_some(whole)
     }
 
-    fn fail<T>(&mut self, message: String, path: &Path) -> Option<T> {
+    fn fail<T>(&mut self, message: String, path: impl Into<Path>) -> Option<T> {
         self.findings.push(Finding::error(message).at(path));
         None
     }

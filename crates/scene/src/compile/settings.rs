@@ -31,13 +31,16 @@ pub fn check(render: &Render, findings: &mut Vec<Finding>) {
 
 /// Checks lights and background, and warns of lights without light.
 pub fn check_light(scene: &Description, findings: &mut Vec<Finding>) {
+    // In an animation a light may be off for a while.
+    let still = scene.animation.frames == 1;
     for (i, light) in scene.lights.iter().enumerate() {
         let path = Path::root().key("lights").index(i);
         if let Err(invalid) = light.check() {
             let path = path.key(crate::kind::name_of(light)).join(invalid.field);
             findings.push(Finding::error(invalid.message).at(&path));
-        } else if light.power(1.0) == 0.0 && light.ambient().is_black() {
-            findings.push(Finding::warning("this light gives no light").at(&path));
+        } else if still && light.power(1.0) == 0.0 && light.ambient().is_black() {
+            let warning = Finding::warning("this light gives no light").at(&path);
+            findings.push(warning.help("raise its `intensity` or `color`, or remove it"));
         }
     }
     if let Some(Backdrop::Kind(background)) = &scene.background

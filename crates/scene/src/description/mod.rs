@@ -102,6 +102,22 @@ impl Default for Description {
     }
 }
 
+/// Why something cannot be placed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Misplaced {
+    /// Path of the field at fault, as in the scene file; empty when several are.
+    pub field: &'static str,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl Misplaced {
+    fn new(field: &'static str, message: impl Into<String>) -> Self {
+        Self { field, message: message.into() }
+    }
+}
+
 /// A background, or a colour that is short for the same colour everywhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]

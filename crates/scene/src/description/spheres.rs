@@ -4,6 +4,7 @@
 //! {"chain": {"from": {"center": [0, 0, 0], "radius": 16}, "to": {"center": [0, 32, 0], "radius": 20}, "count": 8}}
 //! ```
 
+use super::Misplaced;
 use juggler_math::{DVec3, Vec3};
 use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
@@ -98,7 +99,7 @@ impl Chain {
 
 impl Limb {
     /// Its spheres: the bone at `from`, the joint, the bone at `to`.
-    pub fn beads(&self) -> Result<Vec<Bead>, String> {
+    pub fn beads(&self) -> Result<Vec<Bead>, Misplaced> {
         let joint = self.joint()?;
         let bone = |end: Vec3, radius: f32, count: u32| {
             row(end.as_dvec3(), joint, count, count.max(1)).map(move |(k, center)| Bead {
@@ -114,22 +115,26 @@ impl Limb {
 
     /// Where the bones meet: with D = |to − from|, V the unit vector that way and U = V × normal, it is
     /// from + x U + y V for y = (A² − B² + D²) / 2D and x = √(A² − y²) (Birken 2010, step 16).
-    fn joint(&self) -> Result<DVec3, String> {
+    fn joint(&self) -> Result<DVec3, Misplaced> {
+        let whole = |message: String| Misplaced::new("", message);
         let (from, to) = (self.from.as_dvec3(), self.to.as_dvec3());
         let [a, b] = self.lengths.map(f64::from);
         let distance = (to - from).length();
         if distance.is_nan() || distance <= 0.0 {
-            return Err("`from` and `to` must not be the same point".into());
+            return Err(Misplaced::new("to", "`from` and `to` must not be the same point"));
         }
         if distance > (a + b) * (1.0 + 1e-6) {
-            return Err(format!("out of reach: the ends are {distance} apart, the bones together only {} long", a + b));
+            return Err(whole(format!("out of reach: the ends are {distance} apart, the bones only {} long", a + b)));
         }
         if distance < (a - b).abs() * (1.0 - 1e-6) {
-            return Err(format!("the ends are only {distance} apart, bones of {a} and {b} cannot bend that far"));
+            return Err(whole(format!(
+                "the ends are only {distance} apart, bones of {a} and {b} cannot bend that far"
+            )));
         }
         let v = (to - from) / distance;
         let u = v.cross(self.plane_normal.as_dvec3()).try_normalize();
-        let u = u.ok_or("`plane_normal` must not be zero or point along the limb")?;
+        let wrong = || Misplaced::new("plane_normal", "`plane_normal` must not be zero or point along the limb");
+        let u = u.ok_or_else(wrong)?;
         let y = (a * a - b * b + distance * distance) / (2.0 * distance);
         let x = (a * a - y * y).max(0.0).sqrt();
         Ok(from + u * x + v * y)

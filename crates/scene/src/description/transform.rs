@@ -4,6 +4,7 @@
 //! {"transform": [{"scale": 2}, {"rotate": {"axis": [0, 1, 0], "degrees": 30}}, {"translate": [0, 1, 0]}]}
 //! ```
 
+use super::Misplaced;
 use glam::Mat3;
 use juggler_math::{Transform, Vec3};
 use schemars::JsonSchema;
@@ -45,29 +46,23 @@ pub enum Axes {
 
 impl TransformStep {
     /// The map of this step, or why there is none.
-    pub fn transform(&self) -> Result<Transform, String> {
+    pub fn transform(&self) -> Result<Transform, Misplaced> {
         match self {
             Self::Translate(by) => Ok(Transform::translation(*by)),
-            Self::Rotate(Rotate { axis, degrees }) => Transform::rotation(*axis, degrees.to_radians())
-                .ok_or_else(|| "`axis` must not be zero: there is nothing to turn about".to_owned()),
+            Self::Rotate(Rotate { axis, degrees }) => {
+                Transform::rotation(*axis, degrees.to_radians()).ok_or_else(|| {
+                    Misplaced::new("rotate.axis", "`axis` must not be zero: there is nothing to turn about")
+                })
+            }
             Self::Scale(axes) => {
                 let by = match axes {
                     Axes::All(factor) => Vec3::splat(*factor),
                     Axes::Each(factors) => *factors,
                 };
-                Transform::scale(by).ok_or_else(|| "`scale` must not be 0: nothing would be left".to_owned())
+                Transform::scale(by)
+                    .ok_or_else(|| Misplaced::new("scale", "`scale` must not be 0: the object would be flat"))
             }
-            Self::Matrix(rows) => matrix(rows),
-        }
-    }
-
-    /// The key that names this step in a scene file.
-    pub(crate) fn key(&self) -> &'static str {
-        match self {
-            Self::Translate(_) => "translate",
-            Self::Rotate(_) => "rotate",
-            Self::Scale(_) => "scale",
-            Self::Matrix(_) => "matrix",
+            Self::Matrix(rows) => matrix(rows).map_err(|message| Misplaced::new("matrix", message)),
         }
     }
 }

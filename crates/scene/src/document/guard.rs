@@ -1,5 +1,6 @@
 //! What is checked before a text is parsed: its encoding, size, depth and number of values.
 
+use crate::path::Path;
 use std::ops::Range;
 
 /// Largest scene file, in bytes.
@@ -14,6 +15,8 @@ pub const MAX_VALUES: usize = 4_000_000;
 pub struct Refused {
     /// Bytes at fault.
     pub at: Range<usize>,
+    /// The value at fault, as far as the text could be read.
+    pub path: Option<Path>,
     /// What is wrong.
     pub message: String,
     /// What to do about it.
@@ -54,12 +57,12 @@ pub fn check(text: &str) -> Result<(), Refused> {
         }
         if depth > MAX_DEPTH {
             let message = format!("arrays and objects are nested deeper than the limit of {MAX_DEPTH}");
-            return Err(Refused { at: i..i + 1, message, help: None });
+            return Err(Refused { at: i..i + 1, path: None, message, help: None });
         }
         if values > MAX_VALUES {
             let message = format!("the file holds more than the limit of {MAX_VALUES} values");
             let help = Some("put large meshes into files of their own (OBJ, PLY, STL)".into());
-            return Err(Refused { at: i..i + 1, message, help });
+            return Err(Refused { at: i..i + 1, path: None, message, help });
         }
         i += 1;
     }

@@ -12,6 +12,7 @@ use crate::report::{Finding, plain_io};
 use crate::schema::Schema;
 use crate::suggest::meant_or_all;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Named things: one of each name. Variables of included files come first, as later ones may use them.
 const MAPS: [&str; 5] = ["variables", "cameras", "textures", "materials", "groups"];
@@ -62,9 +63,12 @@ impl Reader {
         let id = self.sources.add(name, text);
         let text = self.sources.get(id).map(|source| source.text.as_str()).unwrap_or_default();
         let mut tree = match parse(text, id) {
-            Ok(tree) => tree,
-            Err(refused) => {
+            Ok((tree, refused)) => {
                 self.findings.extend(refused.into_iter().map(|refused| finding(id, refused)));
+                tree
+            }
+            Err(refused) => {
+                self.findings.push(finding(id, refused));
                 self.complete = false;
                 return None;
             }
@@ -75,7 +79,7 @@ impl Reader {
             self.complete = false;
             return None;
         };
-        let Some(include) = members.shift_remove("include") else { return Some(tree) };
+        let Some(include) = Arc::make_mut(members).shift_remove("include") else { return Some(tree) };
         for named in self.names(&include.node) {
             if let Some(other) = self.included(named, id) {
                 self.merge(&mut tree, other);
@@ -153,7 +157,8 @@ impl Reader {
 
     fn merge(&mut self, into: &mut Node, from: Node) {
         let (Value::Object(into), Value::Object(from)) = (&mut into.value, from.value) else { return };
-        for (key, member) in *from {
+        let into = Arc::make_mut(into);
+        for (key, member) in Arc::unwrap_or_clone(from) {
             let known = MAPS.contains(&key.as_str()) || LISTS.contains(&key.as_str());
             match into.get_mut(&key) {
                 None if known => {
@@ -168,11 +173,12 @@ impl Reader {
     fn join(&mut self, key: &str, own: &mut Member, other: Member) {
         match (&mut own.node.value, other.node.value) {
             (Value::Array(own), Value::Array(mut elements)) => {
-                elements.append(own);
+                Arc::make_mut(&mut elements).append(Arc::make_mut(own));
                 *own = elements;
             }
             (Value::Object(own), Value::Object(other)) => {
-                for (at, (name, member)) in other.into_iter().enumerate() {
+                let own = Arc::make_mut(own);
+                for (at, (name, member)) in Arc::unwrap_or_clone(other).into_iter().enumerate() {
                     if let Some(first) = own.get(&name) {
                         let elsewhere = self.file_name(first.key_place);
                         let message = format!("`{name}` in `{key}` has been defined before, in {elsewhere}");
@@ -198,9 +204,9 @@ impl Reader {
 fn finding(file: FileId, refused: Refused) -> Finding {
     let at = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
     let place = Place { file, start: at(refused.at.start), end: at(refused.at.end) };
-    let finding = Finding::error(refused.message).on(Some(place));
-    match refused.help {
-        Some(help) => finding.help(help),
+    let finding = Finding::error(refused.message).on(Some(place)).maybe_help(refused.help);
+    match refused.path {
+        Some(path) => finding.at(&path),
         None => finding,
     }
 }

@@ -3,26 +3,33 @@
 use super::guard::{self, Refused};
 use super::source::{FileId, Place};
 use super::tree::{Member, Members, Node, Value};
+use crate::path::{Path, Step};
+use indexmap::map::Entry;
 use jsonc_parser::ast;
+use jsonc_parser::common::Range as Bytes;
 use jsonc_parser::errors::ParseErrorKind as Kind;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 use serde_json::Number;
 use std::ops::Range;
+use std::sync::Arc;
 
-/// The tree of a text, or its mistakes: the first of syntax, or every duplicate key and unreadable number.
-pub fn parse(text: &str, file: FileId) -> Result<Node, Vec<Refused>> {
-    guard::check(text).map_err(|refused| vec![refused])?;
+/// The tree of a text with every duplicate key and unreadable number in it, or the first mistake of syntax.
+///
+/// In the tree the first of two equal keys stands, and a 1 for a number that cannot be read.
+pub fn parse(text: &str, file: FileId) -> Result<(Node, Vec<Refused>), Refused> {
+    guard::check(text)?;
     let parsed = parse_to_ast(text, &CollectOptions::default(), &options()).map_err(|error| {
-        let (message, help) = explain(error.kind());
-        vec![Refused { at: on_characters(text, error.range().start..error.range().end), message, help }]
+        let at = on_characters(text, error.range().start..error.range().end);
+        let (message, help) = explain(error.kind(), text.get(at.clone()).unwrap_or_default());
+        Refused { at, path: None, message, help }
     })?;
     let Some(value) = parsed.value else {
         let help = Some("the smallest scene is {\"version\": 1, \"objects\": [{\"shape\": \"sphere\"}]}".into());
-        return Err(vec![Refused { at: 0..0, message: "the file is empty".into(), help }]);
+        return Err(Refused { at: 0..0, path: None, message: "the file is empty".into(), help });
     };
-    let mut reader = Reader { file, refused: Vec::new() };
+    let mut reader = Reader { file, path: Path::root(), refused: Vec::new() };
     let node = reader.node(value);
-    if reader.refused.is_empty() { Ok(node) } else { Err(reader.refused) }
+    Ok((node, reader.refused))
 }
 
 /// Strict JSON plus comments and trailing commas.
@@ -41,8 +48,10 @@ fn options() -> ParseOptions {
     }
 }
 
-/// The parser's complaint in our words, with what to do.
-fn explain(kind: &Kind) -> (String, Option<String>) {
+/// The parser's complaint about `word` in our words, with what to do.
+fn explain(kind: &Kind, word: &str) -> (String, Option<String>) {
+    let small = word.to_ascii_lowercase();
+    let quoted = format!("write \"{word}\"");
     let (message, help) = match kind {
         Kind::UnterminatedObject => ("this `{` is never closed by `}`", ""),
         Kind::UnterminatedArray => ("this `[` is never closed by `]`", ""),
@@ -54,13 +63,18 @@ fn explain(kind: &Kind) -> (String, Option<String>) {
         Kind::ExpectedComma => ("a `,` is missing here", ""),
         Kind::ExpectedColonAfterObjectKey => ("a `:` and a value must follow the key", ""),
         Kind::ExpectedObjectValue => ("a value must follow the `:`", ""),
-        Kind::ExpectedStringObjectProperty => ("keys stand in double quotes", "write \"version\": 1"),
+        Kind::ExpectedStringObjectProperty => ("keys stand in double quotes", quoted.as_str()),
         Kind::SingleQuotedStringsNotAllowed => ("strings stand in double quotes", ""),
         Kind::NonFiniteNumbersNotAllowed => ("numbers must be finite", ""),
         Kind::HexadecimalNumbersNotAllowed => ("numbers are decimal", "colours are written \"#rrggbb\", in quotes"),
         Kind::UnaryPlusNumbersNotAllowed => ("a number has no `+` in front", ""),
         Kind::BareDecimalPointNumbersNotAllowed => ("digits must stand on both sides of the point", "write 0.5"),
-        Kind::UnexpectedWord => ("words stand in double quotes", "only true, false and null stand without"),
+        Kind::UnexpectedWord | Kind::UnexpectedToken if matches!(small.as_str(), "true" | "false" | "null") => {
+            ("true, false and null are written in small letters", "")
+        }
+        Kind::UnexpectedWord | Kind::UnexpectedToken => {
+            ("words stand in double quotes", "only true, false and null stand without")
+        }
         Kind::MultipleRootJsonValues => ("a file holds one value, and it ended before this", ""),
         other => return (format!("this is not JSON: {}", lower_first(&other.to_string())), None),
     };
@@ -91,17 +105,19 @@ fn exact(text: &str) -> Option<Number> {
 
 struct Reader {
     file: FileId,
+    path: Path,
     refused: Vec<Refused>,
 }
 
 impl Reader {
-    fn place(&self, range: jsonc_parser::common::Range) -> Option<Place> {
+    fn place(&self, range: Bytes) -> Option<Place> {
         let at = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
         Some(Place { file: self.file, start: at(range.start), end: at(range.end) })
     }
 
-    fn refuse(&mut self, range: jsonc_parser::common::Range, message: String) {
-        self.refused.push(Refused { at: range.start..range.end, message, help: None });
+    fn refuse(&mut self, range: Bytes, message: String, help: &str) {
+        let (at, path) = (range.start..range.end, Some(self.path.clone()));
+        self.refused.push(Refused { at, path, message, help: Some(help.to_owned()) });
     }
 
     fn node(&mut self, value: ast::Value<'_>) -> Node {
@@ -109,23 +125,30 @@ impl Reader {
             ast::Value::NullKeyword(null) => (null.range, Value::Null),
             ast::Value::BooleanLit(literal) => (literal.range, Value::Bool(literal.value)),
             ast::Value::StringLit(literal) => (literal.range, Value::String(literal.value.into_owned())),
-            ast::Value::NumberLit(literal) => (literal.range, self.number(&literal)),
+            ast::Value::NumberLit(literal) => (literal.range, Value::Number(self.number(&literal))),
             ast::Value::Array(array) => {
-                (array.range, Value::Array(array.elements.into_iter().map(|element| self.node(element)).collect()))
+                let elements = array.elements.into_iter().enumerate();
+                let elements = elements.map(|(i, element)| self.inside(Step::Index(i), element)).collect();
+                (array.range, Value::Array(Arc::new(elements)))
             }
-            ast::Value::Object(object) => (object.range, Value::Object(self.members(object))),
+            ast::Value::Object(object) => (object.range, Value::Object(Arc::new(self.members(object)))),
         };
         Node { place: self.place(range), value }
     }
 
-    fn number(&mut self, literal: &ast::NumberLit<'_>) -> Value {
-        match exact(literal.value) {
-            Some(number) => Value::Number(number),
-            None => {
-                self.refuse(literal.range, format!("`{}` is not a number that a computer can hold", literal.value));
-                Value::Null
-            }
-        }
+    fn inside(&mut self, step: Step, value: ast::Value<'_>) -> Node {
+        self.path.push(step);
+        let node = self.node(value);
+        self.path.pop();
+        node
+    }
+
+    fn number(&mut self, literal: &ast::NumberLit<'_>) -> Number {
+        exact(literal.value).unwrap_or_else(|| {
+            let message = format!("`{}` is too large a number", literal.value);
+            self.refuse(literal.range, message, "numbers reach up to 3.4e38");
+            1.into()
+        })
     }
 
     fn members(&mut self, object: ast::Object<'_>) -> Members {
@@ -135,13 +158,16 @@ impl Reader {
                 ast::ObjectPropName::String(name) => (name.value.into_owned(), name.range),
                 ast::ObjectPropName::Word(name) => (name.value.to_owned(), name.range),
             };
-            let member = Member { key_place: self.place(range), node: self.node(property.value) };
+            let node = self.inside(Step::Key(key.clone()), property.value);
             match members.entry(key) {
-                indexmap::map::Entry::Vacant(entry) => {
-                    entry.insert(member);
+                Entry::Vacant(entry) => {
+                    entry.insert(Member { key_place: self.place(range), node });
                 }
-                indexmap::map::Entry::Occupied(entry) => {
-                    self.refuse(range, format!("`{}` stands here a second time", entry.key()));
+                Entry::Occupied(entry) => {
+                    self.path.push(Step::Key(entry.key().clone()));
+                    let message = format!("`{}` stands here a second time", entry.key());
+                    self.refuse(range, message, "join the two, or remove one");
+                    self.path.pop();
                 }
             }
         }

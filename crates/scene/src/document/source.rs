@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 pub struct FileId(u32);
 
 impl FileId {
+    /// The main file of any scene.
+    pub const MAIN: Self = Self(0);
+
     /// Position in the list of files.
     pub(crate) fn index(self) -> usize {
         self.0 as usize

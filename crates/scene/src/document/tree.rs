@@ -4,6 +4,7 @@ use super::source::Place;
 use crate::path::{Path, Step};
 use indexmap::IndexMap;
 use serde_json::Number;
+use std::sync::Arc;
 
 /// One value and its place; values that were not read from a file have none.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,14 +35,14 @@ pub enum Value {
     Number(Number),
     /// Text.
     String(String),
-    /// Values in order.
-    Array(Vec<Node>),
-    /// Named values in the order of the file.
-    Object(Members),
+    /// Values in order; shared, so that the trees of many frames are one but for what moves.
+    Array(Arc<Vec<Node>>),
+    /// Named values in the order of the file; shared likewise.
+    Object(Arc<Members>),
 }
 
-/// The entries of an object in the order of the file (boxed: most nodes are numbers).
-pub type Members = Box<IndexMap<String, Member>>;
+/// The entries of an object in the order of the file.
+pub type Members = IndexMap<String, Member>;
 
 impl Node {
     /// The entry of an object.
@@ -149,10 +150,12 @@ impl From<serde_json::Value> for Node {
             serde_json::Value::Bool(value) => Value::Bool(value),
             serde_json::Value::Number(number) => Value::Number(number),
             serde_json::Value::String(text) => Value::String(text),
-            serde_json::Value::Array(elements) => Value::Array(elements.into_iter().map(Self::from).collect()),
+            serde_json::Value::Array(elements) => {
+                Value::Array(Arc::new(elements.into_iter().map(Self::from).collect()))
+            }
             serde_json::Value::Object(members) => {
                 let member = |node| Member { key_place: None, node };
-                Value::Object(Box::new(members.into_iter().map(|(key, v)| (key, member(Self::from(v)))).collect()))
+                Value::Object(Arc::new(members.into_iter().map(|(key, v)| (key, member(Self::from(v)))).collect()))
             }
         };
         Self { place: None, value }

@@ -54,11 +54,13 @@ pub fn evaluate(text: &str, names: &Names) -> Result<f64, ExpressionError> {
     if value.is_finite() {
         return Ok(value);
     }
-    Err(whole(if value.is_nan() {
-        "the expression has no value (it is 0/0, the root of a negative number or the like)".into()
+    let message = if value.is_nan() {
+        "the expression has no value (it is 0/0, the root of a negative number or the like)"
     } else {
-        "the expression is infinite (a division by 0?)".into()
-    }))
+        "the expression is infinite (a division by 0?)"
+    };
+    let help = names.get("frame").map(|frame| format!("this happens at frame {frame}"));
+    Err(ExpressionError { help, ..whole(message.into()) })
 }
 
 #[cfg(test)]

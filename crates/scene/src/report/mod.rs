@@ -39,8 +39,8 @@ impl Finding {
 
     /// At a path in the merged scene.
     #[must_use]
-    pub fn at(mut self, path: &Path) -> Self {
-        self.path = Some(path.clone());
+    pub fn at(mut self, path: impl Into<Path>) -> Self {
+        self.path = Some(path.into());
         self
     }
 
@@ -167,7 +167,7 @@ fn locate(
     let index = place.file.index();
     let text = sources.get(place.file).map(|source| source.text.as_str()).unwrap_or_default();
     let local = match files.get_mut(index) {
-        Some(file) => file.get_or_insert_with(|| parse(text, place.file).ok()).as_ref(),
+        Some(file) => file.get_or_insert_with(|| parse(text, place.file).ok().map(|(tree, _)| tree)).as_ref(),
         None => None,
     };
     let mut path = local.map(|local| local.path_of(place)).unwrap_or_default();

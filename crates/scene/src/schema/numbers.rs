@@ -34,7 +34,8 @@ fn shorter(value: f64) -> Option<Number> {
     if f64::from(single) != value {
         return None;
     }
-    if value == value.trunc() && value.abs() < 1.0e15 {
+    let negative_zero = value == 0.0 && value.is_sign_negative();
+    if value == value.trunc() && value.abs() < 1.0e15 && !negative_zero {
         return Some(Number::from(value as i64));
     }
     Number::from_f64(single.to_string().parse().ok()?)
@@ -46,10 +47,21 @@ mod tests {
 
     #[test]
     fn digits_that_say_nothing_go_and_bits_stay() {
-        let mut json = serde_json::json!([f64::from(0.8_f32), 0.1, 1.0, f64::from(f32::MAX), -0.0, 7]);
+        let numbers = [0.8_f32, 1.0, f32::MAX, f32::MIN_POSITIVE, 1.0e-45, -0.0, 16_777_216.0, 0.1 + 0.2];
+        let mut json = serde_json::json!(numbers.map(f64::from));
         tidy(&mut json);
-        assert_eq!(json.to_string(), "[0.8,0.1,1,3.4028235e38,0,7]");
-        let read: Vec<f32> = serde_json::from_value(json).unwrap();
-        assert_eq!(read, [0.8, 0.1, 1.0, f32::MAX, 0.0, 7.0]);
+        let text = json.to_string();
+        assert!(text.starts_with("[0.8,1,3.4028235e") && text.contains(",-0.0,16777216,"), "{text}");
+        let read: Vec<f32> = serde_json::from_str(&text).unwrap();
+        let bits = |numbers: &[f32]| numbers.iter().map(|n| n.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&read), bits(&numbers));
+    }
+
+    #[test]
+    fn other_numbers_stay_as_they_are() {
+        let mut json = serde_json::json!([0.1, 7, u64::MAX, 1.0e300, {"deep": [0.3]}]);
+        let before = json.clone();
+        tidy(&mut json);
+        assert_eq!(json, before);
     }
 }

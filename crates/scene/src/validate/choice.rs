@@ -4,6 +4,8 @@ use super::names::Family;
 use super::scalar::is_hex_color;
 use super::{Walk, words};
 use crate::document::{Node, Value as Written};
+use crate::path::Trail;
+use crate::report::Finding;
 use crate::schema::{Schema, variants};
 use serde_json::Value;
 
@@ -16,10 +18,11 @@ struct Branch {
     schema: &'static Value,
 }
 
-impl Walk {
+impl Walk<'_> {
     pub(super) fn choice(
         &mut self,
         node: &Node,
+        at: &Trail<'_>,
         name: Option<&'static str>,
         branches: &'static [Value],
     ) -> Option<Value> {
@@ -30,18 +33,25 @@ impl Walk {
             _ => ways.iter().find(|way| self.fits(node, way.schema)).copied(),
         };
         let Some(way) = way else {
-            return self.mismatch(node, &words::choice(self.schema, name, branches));
+            return self.mismatch(node, at, &words::choice(self.schema, name, branches));
         };
+        if let (Written::Array(channels), Some("Color")) = (&node.value, way.owner)
+            && channels.len() != 3
+        {
+            let found = channels.len();
+            let finding = Finding::error(format!("a colour is [red, green, blue], this array has {found} elements"));
+            return self.report(node, at, finding);
+        }
         if let Written::String(text) = &node.value
             && words::allows(self.schema.follow(way.schema).1, "string")
         {
             match way.owner.map(words::family) {
-                Some("Input") => self.refer(Family::Texture, text),
-                Some("MaterialRef") => self.refer(Family::Material, text),
+                Some("Input") => self.refer(Family::Texture, node, text, at),
+                Some("MaterialRef") => self.refer(Family::Material, node, text, at),
                 _ => {}
             }
         }
-        self.value(node, way.schema)
+        self.value(node, at, way.schema)
     }
 
     /// Whether a value of this JSON type may stand there.

@@ -2,56 +2,82 @@
 
 use super::{Walk, words};
 use crate::document::{Members, Node, Value as Written};
-use crate::path::Step;
+use crate::path::Trail;
 use crate::report::Finding;
 use crate::schema::variants;
 use crate::suggest::meant_or_all;
 use serde_json::Value;
 
-impl Walk {
-    pub(super) fn family(&mut self, node: &Node, name: &str, family: &'static Value) -> Option<Value> {
+impl Walk<'_> {
+    pub(super) fn family(&mut self, node: &Node, at: &Trail<'_>, name: &str, family: &'static Value) -> Option<Value> {
         let noun = words::noun(name);
         match &node.value {
             Written::Object(members) if self.schema.kinds(family).next().is_some() => {
-                self.kind(node, members, &noun, family)
+                self.kind(node, at, members, &noun, family)
             }
-            Written::String(text) => self.word(node, text, &noun, family),
+            Written::String(text) => self.word(node, at, text, &noun, family),
             _ => {
                 let example = self.schema.kinds(family).next().map(|(kind, _)| format!(" such as {{\"{kind}\": ...}}"));
                 let example = example.unwrap_or_else(|| format!(": {}", words::list(fixed_words(family), "or")));
-                self.mismatch(node, &format!("{} {noun}{example}", words::article(&noun)))
+                self.mismatch(node, at, &format!("{} {noun}{example}", words::article(&noun)))
             }
         }
     }
 
-    fn kind(&mut self, node: &Node, members: &Members, noun: &str, family: &'static Value) -> Option<Value> {
+    fn kind(
+        &mut self,
+        node: &Node,
+        at: &Trail<'_>,
+        members: &Members,
+        noun: &str,
+        family: &'static Value,
+    ) -> Option<Value> {
         let mut entries = members.iter();
         let (Some((key, member)), None) = (entries.next(), entries.next()) else {
-            let found = match members.len() {
-                0 => "none".to_owned(),
-                _ => words::list(members.keys().map(String::as_str), "and"),
-            };
-            let message = format!("{} {noun} is of exactly one kind, found {found}", words::article(noun));
-            let tagged = members.get("type").and_then(|tag| tag.node.as_str());
-            let help = tagged.map(|kind| format!("write {{\"{kind}\": {{...}}}}")).unwrap_or_else(|| {
-                let kinds: Vec<String> = self.schema.kinds(family).map(|(kind, _)| format!("`{kind}`")).collect();
-                format!("kinds: {}", kinds.join(", "))
-            });
-            return self.report(node, Finding::error(message).help(help));
+            return self.not_one_kind(node, at, members, noun, family);
         };
         let Some((_, content)) = self.schema.kinds(family).find(|(kind, _)| kind == key) else {
             let kinds: Vec<&str> = self.schema.kinds(family).map(|(kind, _)| kind).collect();
             let finding = Finding::error(format!("unknown kind of {noun} `{key}`"));
             let finding = finding.maybe_help(meant_or_all(key, kinds.iter().copied())).on(member.key_place);
-            self.inside(Step::Key(key.clone()), |walk| walk.findings.push(finding.at(&walk.path)));
+            self.findings.push(finding.at(&at.key(key)));
             return None;
         };
-        let value = self.inside(Step::Key(key.clone()), |walk| walk.value(&member.node, content))?;
+        let value = self.value(&member.node, &at.key(key), content)?;
         Some(Value::Object([(key.clone(), value)].into_iter().collect()))
     }
 
+    /// Complains of no key or several where the name of one kind should stand.
+    fn not_one_kind<T>(
+        &mut self,
+        node: &Node,
+        at: &Trail<'_>,
+        members: &Members,
+        noun: &str,
+        family: &'static Value,
+    ) -> Option<T> {
+        let kinds: Vec<&str> = self.schema.kinds(family).map(|(kind, _)| kind).collect();
+        let mut named = members.keys().filter(|key| kinds.contains(&key.as_str()));
+        let a = words::article(noun);
+        if let (Some(kind), None) = (named.next(), named.next()) {
+            let others = words::list(members.keys().filter(|key| *key != kind).map(String::as_str), "and");
+            let message = format!("{others} cannot stand beside `{kind}`: {a} {noun} is of exactly one kind");
+            let help = format!("settings of the {noun} belong inside {{\"{kind}\": {{...}}}}, others outside of it");
+            return self.report(node, at, Finding::error(message).help(help));
+        }
+        let found =
+            if members.is_empty() { "none".into() } else { words::list(members.keys().map(String::as_str), "and") };
+        let message = format!("{a} {noun} is of exactly one kind, found {found}");
+        let tagged = members.get("type").and_then(|tag| tag.node.as_str()).filter(|tag| kinds.contains(tag));
+        let help = tagged.map(|kind| format!("write {{\"{kind}\": {{...}}}} instead of \"type\": \"{kind}\""));
+        let several = members.len() > 1 && members.keys().all(|key| kinds.contains(&key.as_str()));
+        let other = || if several { "choose one".into() } else { format!("kinds: {}", words::list(kinds, "and")) };
+        let help = help.unwrap_or_else(other);
+        self.report(node, at, Finding::error(message).help(help))
+    }
+
     /// A kind by its name alone, or one of a list of words.
-    fn word(&mut self, node: &Node, text: &str, noun: &str, family: &'static Value) -> Option<Value> {
+    fn word(&mut self, node: &Node, at: &Trail<'_>, text: &str, noun: &str, family: &'static Value) -> Option<Value> {
         if fixed_words(family).any(|word| word == text) {
             return Some(text.into());
         }
@@ -63,14 +89,14 @@ impl Walk {
                 let required = self.schema.follow(content).1.get("required").and_then(Value::as_array);
                 let required = required.into_iter().flatten().filter_map(Value::as_str);
                 let message = format!("the {noun} `{kind}` needs {}", words::list(required, "and"));
-                self.report(node, Finding::error(message).help(format!("write {{\"{kind}\": {{...}}}}")))
+                self.report(node, at, Finding::error(message).help(format!("write {{\"{kind}\": {{...}}}}")))
             }
             None => {
                 let kinds = self.schema.kinds(family).map(|(kind, _)| kind);
                 let known: Vec<&str> = kinds.chain(fixed_words(family)).collect();
                 let what = if fixed_words(family).next().is_some() { "" } else { "kind of " };
                 let finding = Finding::error(format!("unknown {what}{noun} `{text}`"));
-                self.report(node, finding.maybe_help(meant_or_all(text, known.iter().copied())))
+                self.report(node, at, finding.maybe_help(meant_or_all(text, known.iter().copied())))
             }
         }
     }

@@ -4,7 +4,7 @@
 //! written `8.0` become whole. What is wrong is left out, so that the rest can still be checked.
 
 use crate::document::{Node, Value as Written};
-use crate::path::{Path, Step};
+use crate::path::Trail;
 use crate::report::Finding;
 use crate::schema::Schema;
 use serde_json::Value;
@@ -33,59 +33,55 @@ pub struct Validated {
 /// Checks a scene whose expressions are resolved.
 pub fn validate(tree: &Node) -> Validated {
     let schema = Schema::get();
-    let mut walk = Walk { schema, path: Path::root(), findings: Vec::new(), references: Vec::new() };
-    let json = walk.value(tree, schema.root());
-    let references = std::mem::take(&mut walk.references);
-    let mut findings = walk.findings;
-    names::check(tree, references, &mut findings);
-    Validated { json, findings }
+    let mut walk = Walk { schema, tree, findings: Vec::new() };
+    let json = walk.value(tree, &Trail::Root, schema.root());
+    Validated { json, findings: walk.findings }
 }
 
-/// A name that stands for something defined elsewhere in the scene.
-struct Reference {
-    family: Family,
-    name: String,
-    path: Path,
-}
-
-struct Walk {
+struct Walk<'t> {
     schema: &'static Schema,
-    path: Path,
+    /// The whole scene, where names are looked up.
+    tree: &'t Node,
     findings: Vec<Finding>,
-    references: Vec<Reference>,
 }
 
-impl Walk {
+impl Walk<'_> {
     /// The plain JSON of a value, or nothing when it is wrong and must be left out.
-    fn value(&mut self, node: &Node, schema: &'static Value) -> Option<Value> {
+    fn value(&mut self, node: &Node, at: &Trail<'_>, schema: &'static Value) -> Option<Value> {
         if self.findings.len() >= MAX_FINDINGS {
             return None;
         }
         let (name, target) = self.schema.follow(schema);
         if let Some(branches) = target.get("anyOf").and_then(Value::as_array) {
-            return self.choice(node, name, branches);
+            return self.choice(node, at, name, branches);
         }
         if crate::schema::variants(target).next().is_some() {
-            return self.family(node, name.unwrap_or("kind"), target);
+            return self.family(node, at, name.unwrap_or("kind"), target);
         }
-        self.typed(node, name, target)
+        self.typed(node, at, name, target)
     }
 
     /// A value whose JSON type the schema fixes.
-    fn typed(&mut self, node: &Node, name: Option<&'static str>, schema: &'static Value) -> Option<Value> {
+    fn typed(
+        &mut self,
+        node: &Node,
+        at: &Trail<'_>,
+        name: Option<&'static str>,
+        schema: &'static Value,
+    ) -> Option<Value> {
         match &node.value {
             Written::Null if words::allows(schema, "null") => Some(Value::Null),
-            Written::Number(number) if words::allows_number(schema) => self.number(node, number, schema),
-            Written::String(text) if words::allows(schema, "string") => self.string(node, text, name, schema),
+            Written::Number(number) if words::allows_number(schema) => self.number(node, at, number, schema),
+            Written::String(text) if words::allows(schema, "string") => self.string(node, at, text, name, schema),
             Written::Bool(value) if words::allows(schema, "boolean") => Some((*value).into()),
-            Written::Array(elements) if words::allows(schema, "array") => self.array(node, elements, schema),
-            Written::Object(members) if words::allows(schema, "object") => self.object(node, members, name, schema),
-            _ => self.mismatch(node, &words::expected(self.schema, schema)),
+            Written::Array(elements) if words::allows(schema, "array") => self.array(node, at, elements, schema),
+            Written::Object(members) if words::allows(schema, "object") => self.object(node, at, members, name, schema),
+            _ => self.mismatch(node, at, &words::expected(self.schema, schema)),
         }
     }
 
     /// The wrong type of value stands here.
-    fn mismatch(&mut self, node: &Node, expected: &str) -> Option<Value> {
+    fn mismatch(&mut self, node: &Node, at: &Trail<'_>, expected: &str) -> Option<Value> {
         let finding = match &node.value {
             Written::Null if node.place.is_none() => {
                 Finding::error(format!("expected {expected}, found one that is not finite"))
@@ -96,20 +92,12 @@ impl Walk {
             }
             _ => Finding::error(format!("expected {expected}, found {}", node.kind())),
         };
-        self.report(node, finding)
+        self.report(node, at, finding)
     }
 
     /// Something is wrong with this value.
-    fn report<T>(&mut self, node: &Node, finding: Finding) -> Option<T> {
-        self.findings.push(finding.at(&self.path).on(node.place));
+    fn report<T>(&mut self, node: &Node, at: &Trail<'_>, finding: Finding) -> Option<T> {
+        self.findings.push(finding.at(at).on(node.place));
         None
-    }
-
-    /// Goes into a member.
-    fn inside<T>(&mut self, step: Step, visit: impl FnOnce(&mut Self) -> T) -> T {
-        self.path.push(step);
-        let result = visit(self);
-        self.path.pop();
-        result
     }
 }

@@ -1,7 +1,8 @@
 //! Names: whatever is referred to must be there.
 
-use super::Reference;
+use super::Walk;
 use crate::document::Node;
+use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest::meant_or_all;
 
@@ -30,20 +31,19 @@ impl Family {
     }
 }
 
-/// Reports every name that nothing has.
-pub(super) fn check(tree: &Node, references: Vec<Reference>, findings: &mut Vec<Finding>) {
-    for Reference { family, name, path } in references {
+impl Walk<'_> {
+    /// Reports a name that nothing in the scene has.
+    pub(super) fn refer(&mut self, family: Family, node: &Node, name: &str, at: &Trail<'_>) {
         let (part, noun) = family.words();
-        let known = tree.get(part);
-        if known.is_some_and(|known| known.get(&name).is_some()) {
-            continue;
+        let known = self.tree.get(part);
+        if known.is_some_and(|known| known.get(name).is_some()) {
+            return;
         }
         let names: Vec<&str> = known.into_iter().flat_map(Node::members).map(|(name, _)| name.as_str()).collect();
-        let help = meant_or_all(&name, names.iter().copied());
-        let help = help.unwrap_or_else(|| match family {
+        let help = meant_or_all(name, names.iter().copied()).unwrap_or_else(|| match family {
             Family::Texture => "the scene has no `textures`; a colour is written [r, g, b] or \"#rrggbb\"".into(),
             _ => format!("the scene has no `{part}`"),
         });
-        findings.push(Finding::error(format!("no {noun} is called `{name}`")).at(&path).help(help));
+        self.report::<()>(node, at, Finding::error(format!("no {noun} is called `{name}`")).help(help));
     }
 }

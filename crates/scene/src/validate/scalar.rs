@@ -1,33 +1,43 @@
 //! Numbers and strings.
 
 use super::names::Family;
-use super::{Reference, Walk, words};
+use super::{Walk, words};
 use crate::document::Node;
-use crate::path::Step;
+use crate::path::Trail;
 use crate::report::Finding;
 use serde_json::{Number, Value};
 
-impl Walk {
-    pub(super) fn number(&mut self, node: &Node, number: &Number, schema: &'static Value) -> Option<Value> {
+impl Walk<'_> {
+    pub(super) fn number(
+        &mut self,
+        node: &Node,
+        at: &Trail<'_>,
+        number: &Number,
+        schema: &'static Value,
+    ) -> Option<Value> {
         let written = number.as_f64().unwrap_or(f64::NAN);
         let whole = !words::allows(schema, "number");
         if whole && written != written.trunc() {
-            return self.wrong_number(node, "a whole number", number);
+            return self.wrong_number(node, at, "a whole number", number);
         }
         let single = schema.get("format").is_some_and(|format| format == "float");
         // Limits are meant for the number that will be used: 1e-60 is 0 in 32 bits.
         let value = if single { f64::from(written as f32) } else { written };
         if !value.is_finite() {
-            return self.wrong_number(node, "between -3.4e38 and 3.4e38", number);
+            return self.wrong_number(node, at, "between -3.4e38 and 3.4e38", number);
         }
-        if self.path.steps() == [Step::Key("version".into())] && value != 1.0 {
+        if matches!(at, Trail::Key(Trail::Root, "version")) && value != 1.0 {
             let message = format!("this is version {number} of the format, this program reads version 1");
-            self.report::<()>(node, Finding::error(message));
+            self.report::<()>(node, at, Finding::error(message));
             // The rest may be right all the same.
             return Some(1.into());
         }
         if let Some(bound) = broken_bound(schema, value) {
-            return self.wrong_number(node, &bound, number);
+            if value == 0.0 && written != 0.0 {
+                let message = format!("`{number}` is too small a number: in 32 bits it is 0");
+                return self.report(node, at, Finding::error(message).help(format!("it must be {bound}")));
+            }
+            return self.wrong_number(node, at, &bound, number);
         }
         if whole && number.is_f64() {
             return Some((value as i64).into());
@@ -35,23 +45,21 @@ impl Walk {
         Some(Value::Number(number.clone()))
     }
 
-    fn wrong_number(&mut self, node: &Node, wanted: &str, number: &Number) -> Option<Value> {
-        let subject = match self.path.steps().last() {
-            Some(Step::Key(key)) => format!("`{key}`"),
-            Some(Step::Index(_)) => match self.path.steps().iter().rev().find(|s| matches!(s, Step::Key(_))) {
-                Some(Step::Key(key)) => format!("each number of `{key}`"),
-                _ => "each number".into(),
-            },
-            None => "the number".into(),
+    fn wrong_number(&mut self, node: &Node, at: &Trail<'_>, wanted: &str, number: &Number) -> Option<Value> {
+        let subject = match (at, at.last_key()) {
+            (Trail::Key(..), Some(key)) => format!("`{key}`"),
+            (_, Some(key)) => format!("each number of `{key}`"),
+            (_, None) => "the number".into(),
         };
         let mut shown = Value::Number(number.clone());
         crate::schema::tidy(&mut shown);
-        self.report(node, Finding::error(format!("{subject} must be {wanted}, is {shown}")))
+        self.report(node, at, Finding::error(format!("{subject} must be {wanted}, is {shown}")))
     }
 
     pub(super) fn string(
         &mut self,
         node: &Node,
+        at: &Trail<'_>,
         text: &str,
         name: Option<&'static str>,
         schema: &'static Value,
@@ -62,18 +70,13 @@ impl Walk {
             _ => None,
         };
         if let Some(family) = family {
-            self.refer(family, text);
+            self.refer(family, node, text, at);
         }
         if schema.get("pattern").is_some() && !is_hex_color(text) {
-            let help = "a colour is written \"#rrggbb\": six digits 0-9 or a-f after the #";
-            return self.report(node, Finding::error(format!("`{text}` is not a colour")).help(help));
+            let help = "a colour is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f";
+            return self.report(node, at, Finding::error(format!("`{text}` is not a colour")).help(help));
         }
         Some(text.into())
-    }
-
-    /// Remembers that a name stands here for something defined elsewhere.
-    pub(super) fn refer(&mut self, family: Family, name: &str) {
-        self.references.push(Reference { family, name: name.to_owned(), path: self.path.clone() });
     }
 }
 

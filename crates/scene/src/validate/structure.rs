@@ -2,7 +2,7 @@
 
 use super::{MAX_FINDINGS, Walk, words};
 use crate::document::{Members, Node};
-use crate::path::Step;
+use crate::path::Trail;
 use crate::report::Finding;
 use crate::schema::exactly_one;
 use crate::suggest::meant_or_all;
@@ -12,8 +12,14 @@ use serde_json::{Map, Value};
 /// camera, a shape) members hang together.
 const LOOSE: [&str; 2] = ["Object", "Render"];
 
-impl Walk {
-    pub(super) fn array(&mut self, node: &Node, elements: &[Node], schema: &'static Value) -> Option<Value> {
+impl Walk<'_> {
+    pub(super) fn array(
+        &mut self,
+        node: &Node,
+        at: &Trail<'_>,
+        elements: &[Node],
+        schema: &'static Value,
+    ) -> Option<Value> {
         let bound = |key: &str| schema.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
         let (least, most, found) = (bound("minItems"), bound("maxItems"), elements.len());
         let wanted = match (least, most) {
@@ -25,7 +31,7 @@ impl Walk {
         if let Some(wanted) = wanted {
             let what = words::elements(self.schema, schema);
             let message = format!("expected {wanted} {what} in this array, found {found}");
-            return self.report(node, Finding::error(message));
+            return self.report(node, at, Finding::error(message));
         }
         let items = schema.get("items")?;
         let mut values = Vec::with_capacity(found);
@@ -33,7 +39,7 @@ impl Walk {
             if self.findings.len() >= MAX_FINDINGS {
                 return None;
             }
-            values.push(self.inside(Step::Index(i), |walk| walk.value(element, items)));
+            values.push(self.value(element, &at.index(i), items));
         }
         values.into_iter().collect::<Option<Vec<Value>>>().map(Value::Array)
     }
@@ -41,13 +47,14 @@ impl Walk {
     pub(super) fn object(
         &mut self,
         node: &Node,
+        at: &Trail<'_>,
         members: &Members,
         name: Option<&'static str>,
         schema: &'static Value,
     ) -> Option<Value> {
         let properties = schema.get("properties").and_then(Value::as_object);
         let others = schema.get("additionalProperties").filter(|others| others.is_object());
-        let root = self.path.steps().is_empty();
+        let root = at.is_root();
         let loose = root || name.is_some_and(|name| LOOSE.contains(&name)) || properties.is_none();
         let mut json = Map::new();
         let mut sound = true;
@@ -58,20 +65,20 @@ impl Walk {
             let Some(schema) = properties.and_then(|known| known.get(key)).or(others) else {
                 let known: Vec<&str> =
                     properties.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
-                let finding = unknown_key(key, &known).on(member.key_place);
-                self.inside(Step::Key(key.clone()), |walk| walk.findings.push(finding.at(&walk.path)));
+                let finding = unknown_key(key, &known, at).on(member.key_place);
+                self.findings.push(finding.at(&at.key(key)));
                 sound = false;
                 continue;
             };
-            match self.inside(Step::Key(key.clone()), |walk| walk.value(&member.node, schema)) {
+            match self.value(&member.node, &at.key(key), schema) {
                 Some(value) => {
                     json.insert(key.clone(), value);
                 }
                 None => sound = false,
             }
         }
-        let complete = self.required(node, members, schema);
-        self.exactly_one(node, members, schema);
+        let complete = self.required(node, at, members, schema);
+        self.exactly_one(node, at, members, schema);
         if root {
             json.entry("version").or_insert(1.into());
         }
@@ -79,7 +86,7 @@ impl Walk {
     }
 
     /// Whether all keys stand that must stand.
-    fn required(&mut self, node: &Node, members: &Members, schema: &'static Value) -> bool {
+    fn required(&mut self, node: &Node, at: &Trail<'_>, members: &Members, schema: &'static Value) -> bool {
         let required = schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
         let missing: Vec<&str> = required.filter(|key| !members.contains_key(*key)).collect();
         if missing.is_empty() {
@@ -91,11 +98,11 @@ impl Walk {
         if missing == ["version"] {
             finding = finding.help("a scene file begins with {\"version\": 1, ...");
         }
-        self.report::<()>(node, finding).is_some()
+        self.report::<()>(node, at, finding).is_some()
     }
 
     /// Complains when not exactly one of some keys stands.
-    fn exactly_one(&mut self, node: &Node, members: &Members, schema: &'static Value) {
+    fn exactly_one(&mut self, node: &Node, at: &Trail<'_>, members: &Members, schema: &'static Value) {
         let keys = exactly_one(schema);
         let found: Vec<&str> = keys.iter().copied().filter(|key| members.contains_key(*key)).collect();
         if keys.is_empty() || found.len() == 1 {
@@ -105,16 +112,20 @@ impl Walk {
         let message = format!("exactly one of {} must stand here, found {found}", words::list(keys, "and"));
         // A misspelt one is its own message.
         let misspelt = members.keys().any(|key| schema.get("properties").is_some_and(|known| known.get(key).is_none()));
-        if found != "none" || !misspelt {
-            self.report::<()>(node, Finding::error(message));
-        }
+        let help = match found.as_str() {
+            "none" if misspelt => return,
+            "none" => "write for example \"shape\": \"sphere\"",
+            _ => "make it several objects, one for each",
+        };
+        self.report::<()>(node, at, Finding::error(message).help(help));
     }
 }
 
-fn unknown_key(key: &str, known: &[&str]) -> Finding {
-    let finding = Finding::error(format!("`{key}` is not known here"));
-    if known.is_empty() {
-        return finding.help("this has no settings: write {}");
+fn unknown_key(key: &str, known: &[&str], at: &Trail<'_>) -> Finding {
+    if let ([], Some(owner)) = (known, at.last_key()) {
+        return Finding::error(format!("`{owner}` has no setting `{key}`, nor any other"))
+            .help(format!("write \"{owner}\": {{}}"));
     }
+    let finding = Finding::error(format!("`{key}` is not known here"));
     finding.maybe_help(meant_or_all(key, known.iter().copied()))
 }

@@ -44,6 +44,7 @@ pub fn expected(all: &Schema, schema: &Value) -> String {
 pub fn choice(all: &Schema, name: Option<&str>, branches: &[Value]) -> String {
     match name {
         Some("Color") => "a colour ([r, g, b], \"#rrggbb\" or one number)".into(),
+        Some("MaterialRef") => "a material {...} or the name of one".into(),
         name => alternatives(all, branches, name),
     }
 }
@@ -54,7 +55,6 @@ fn alternatives(all: &Schema, branches: &[Value], owner: Option<&str>) -> String
         let text = branch.get("type").is_some_and(|t| t == "string");
         words.push(match (text, owner.map(family)) {
             (true, Some("Input")) => "the name of a texture".into(),
-            (true, Some("MaterialRef")) => "the name of a material".into(),
             _ => expected(all, branch),
         });
     }
