@@ -18,7 +18,7 @@ pub struct Args {
 /// Flags of `juggler render`.
 #[derive(Clone, Debug, Default, Arguments)]
 pub struct RenderArgs {
-    /// A scene file, or the name of a built-in scene (see `juggler scenes`)
+    /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
     /// Where the picture goes; the ending says the format, `-` is standard output [default: the scene's name.png]
@@ -45,15 +45,15 @@ pub struct RenderArgs {
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, help_heading = "Output")]
     pub exposure: Option<f32>,
 
-    /// Writes counts, times and the hash of the pixels as JSON; `-` is standard output
+    /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub stats: Option<String>,
 
-    /// Shows how far it is, on standard error
+    /// Show how far it is, on standard error
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub progress: Progress,
 
-    /// Says nothing but errors
+    /// Say nothing but errors
     #[arg(short, long, conflicts_with = "progress", help_heading = "Output")]
     pub quiet: bool,
 
@@ -101,7 +101,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Machine")]
     pub threads: Option<u16>,
 
-    /// Refuses to render what needs more memory
+    /// Refuse to render what needs more memory
     #[arg(long, value_name = "SIZE", value_parser = value::memory, help_heading = "Machine")]
     pub max_memory: Option<u64>,
 }

@@ -7,9 +7,7 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match writeln!(out, "{}", text.trim_end_matches('\n')).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::file("write to", "standard output", &error))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::file("write", "standard output", &error)),
         _ => Ok(()),
     }
 }

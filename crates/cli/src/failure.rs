@@ -72,6 +72,8 @@ impl From<ImageError> for Failure {
     fn from(error: ImageError) -> Self {
         let message = error.to_string();
         match error {
+            ImageError::Read { place, source } => Self::file("read", place, &source),
+            ImageError::Write { place, source } => Self::file("write", place, &source),
             ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } => Self::Wrong(message),
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
@@ -96,6 +98,10 @@ pub fn plain(error: &std::io::Error) -> String {
         std::io::ErrorKind::NotFound => "no such file or folder".into(),
         std::io::ErrorKind::PermissionDenied => "permission denied".into(),
         std::io::ErrorKind::IsADirectory => "it is a folder".into(),
+        std::io::ErrorKind::NotADirectory => "a part of its path is no folder".into(),
+        std::io::ErrorKind::StorageFull => "no space is left".into(),
+        std::io::ErrorKind::QuotaExceeded => "the quota is used up".into(),
+        std::io::ErrorKind::ReadOnlyFilesystem => "the disk cannot be written to".into(),
         std::io::ErrorKind::BrokenPipe => "nobody reads it any more".into(),
         _ => error.to_string(),
     }

@@ -9,6 +9,7 @@ mod interrupt;
 mod output;
 mod plan;
 mod progress;
+mod reproduce;
 mod source;
 mod stats;
 mod value;

@@ -74,6 +74,9 @@ impl Plan {
     /// Works out what was meant, or says why it cannot be.
     pub fn new(args: RenderArgs) -> Result<Self, Failure> {
         let output = args.output.clone().unwrap_or_else(|| format!("{}.png", source::stem(&args.scene)));
+        if output.is_empty() {
+            return Err(Failure::Wrong("the output has no name".into()));
+        }
         output::at_most_one_stream(&output, args.stats.as_deref())?;
         let encoding = Encoding::new(&args, &output)?;
         let moments = match (args.frames, args.frame, args.at) {

@@ -1,15 +1,26 @@
-//! Where scenes come from: a file, or the program itself.
+//! Where scenes come from: a file, standard input, or the program itself.
 
 use crate::failure::Failure;
+use crate::format::bytes;
 use juggler::scene::suggest::closest;
 use juggler::scene::{Scene, built_in_scenes};
+use std::io::Read;
 use std::path::Path;
 
+/// The name that means standard input.
+const STANDARD_INPUT: &str = "-";
+/// How messages call it.
+const STANDARD_INPUT_NAME: &str = "standard input";
+/// Most bytes that are taken from there.
+const MAX_BYTES: u64 = 64 << 20;
 /// Most names of files that are looked through for what was meant.
 const MAX_NAMES: usize = 10_000;
 
 /// Reads a scene file; what is no file may be the name of a built-in scene.
 pub fn load(name: &str) -> Result<Scene, Failure> {
+    if name == STANDARD_INPUT {
+        return Ok(Scene::from_json(standard_input()?, STANDARD_INPUT_NAME)?);
+    }
     let path = Path::new(name);
     if path.exists() && !path.is_dir() {
         return Ok(Scene::load(path)?);
@@ -23,9 +34,21 @@ pub fn load(name: &str) -> Result<Scene, Failure> {
     Err(unknown(name))
 }
 
+fn standard_input() -> Result<String, Failure> {
+    let mut text = Vec::new();
+    let read = std::io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut text);
+    read.map_err(|error| Failure::file("read", STANDARD_INPUT_NAME, &error))?;
+    if text.len() as u64 > MAX_BYTES {
+        let most = bytes(MAX_BYTES);
+        return Err(Failure::Wrong(format!("{STANDARD_INPUT_NAME} holds more than the limit of {most}")));
+    }
+    String::from_utf8(text).map_err(|_| Failure::Wrong(format!("{STANDARD_INPUT_NAME} is no text in UTF-8")))
+}
+
 /// The name without folder and ending.
 pub fn stem(name: &str) -> &str {
-    Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or("picture")
+    let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
+    stem.filter(|stem| *stem != STANDARD_INPUT).unwrap_or("picture")
 }
 
 /// Somebody who writes an ending or a folder means a file, and the file is missing; else the name is wrong.
@@ -60,6 +83,7 @@ mod tests {
 
     #[test]
     fn stems() {
+        assert_eq!(stem("-"), "picture");
         assert_eq!((stem("juggler"), stem("a/b.scene.json"), stem("..")), ("juggler", "b.scene", "picture"));
     }
 }

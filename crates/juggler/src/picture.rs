@@ -79,12 +79,17 @@ impl Picture {
         &self.fingerprint
     }
 
-    /// The head of its file.
+    /// The head of its file; the texts say which program made it, and the fingerprint, seed and samples.
     pub fn header(&self, options: Options) -> Header {
         let [width, height] = self.size();
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let software = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
-        let metadata = vec![text("Software", software), text("Fingerprint", &self.fingerprint)];
+        let metadata = vec![
+            text("Software", software),
+            text("Fingerprint", &self.fingerprint),
+            text("Seed", &self.compiled.settings.seed.to_string()),
+            text("Samples", &self.samples().to_string()),
+        ];
         Header { tone: self.tone.clone(), options, metadata, ..Header::new(width, height) }
     }
 

@@ -15,7 +15,7 @@ pub struct Bench {
 /// Everything that is measured.
 #[derive(Debug, Subcommand)]
 enum What {
-    /// Compares ways to hand out pixels to threads: blocks of rows, a queue of rows, tiles that idle threads steal
+    /// Compare ways to hand out pixels to threads: blocks of rows, a queue of rows, tiles that idle threads steal
     Schedulers(schedulers::Schedulers),
 }
 

@@ -19,7 +19,7 @@ pub struct Compare {
     /// The root mean squared difference up to which they count as equal; without it every bit must be
     #[arg(long, value_name = "RMSE", value_parser = value::tolerance)]
     tolerance: Option<f64>,
-    /// Writes the numbers as JSON; `-` is standard output
+    /// Write the numbers as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     stats: Option<String>,
 }

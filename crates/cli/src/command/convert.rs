@@ -11,7 +11,7 @@ use std::path::Path;
 /// Flags of `juggler convert`.
 #[derive(Debug, Args)]
 pub struct Convert {
-    /// A scene file, or the name of a built-in scene
+    /// A scene file, the name of a built-in scene, or `-` for standard input
     scene: String,
     /// The file to write, `-` for standard output
     output: String,

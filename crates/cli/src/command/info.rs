@@ -1,18 +1,22 @@
-//! `juggler info`: what is in a scene.
+//! `juggler info`: what is in a scene, and what a picture says about itself.
 
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, counted};
 use crate::source;
 use clap::Args;
+use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Scene};
-use serde_json::json;
+use serde_json::{Map, Value, json};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 /// Flags of `juggler info`.
 #[derive(Debug, Args)]
 pub struct Info {
-    /// A scene file, or the name of a built-in scene
+    /// A scene file, the name of a built-in scene, `-` for standard input, or a picture
     scene: String,
     /// As one JSON object
     #[arg(long)]
@@ -20,8 +24,11 @@ pub struct Info {
 }
 
 impl Info {
-    /// Builds the world and prints what is in it.
+    /// Prints what a picture says, or builds the world and prints what is in it.
     pub fn run(self) -> Result<(), Failure> {
+        if let Some(format) = picture_format(Path::new(&self.scene)) {
+            return self.picture(format);
+        }
         let scene = source::load(&self.scene)?;
         let compiled = scene.compile()?;
         if self.json {
@@ -29,6 +36,34 @@ impl Info {
         }
         console::print(&to_words(&self.scene, &scene, &compiled))
     }
+
+    fn picture(&self, format: Format) -> Result<(), Failure> {
+        let Facts { width, height, metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+        if self.json {
+            let texts: Map<String, Value> = metadata.into_iter().map(|(key, text)| (key, text.into())).collect();
+            let name = format.ending();
+            let json = json!({
+                "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts
+            });
+            return console::print(&json.to_string());
+        }
+        let texts = metadata.iter().map(|(key, text)| row(key, text));
+        let lines =
+            [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))].into_iter().chain(texts);
+        console::print(&lines.collect::<Vec<_>>().join("\n"))
+    }
+}
+
+/// The format of a file that is a picture.
+fn picture_format(path: &Path) -> Option<Format> {
+    let file = File::open(path).ok().filter(|_| path.is_file())?;
+    let mut start = Vec::new();
+    file.take(12).read_to_end(&mut start).ok()?;
+    Format::from_first_bytes(&start)
+}
+
+fn row(key: &str, value: &str) -> String {
+    format!("{key:12} {value}")
 }
 
 fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
@@ -42,7 +77,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     if !description.description.is_empty() {
         lines.push(description.description.clone());
     }
-    let mut row = |key: &str, value: String| lines.push(format!("{key:12}{value}"));
+    let mut row = |key: &str, value: String| lines.push(row(key, &value));
     row("picture", format!("{width}x{height}, {}", counted(settings.samples.into(), "sample")));
     row("integrator", settings.integrator.name().into());
     row("shapes", geometry.shapes.to_string());
@@ -57,9 +92,17 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         format!("{} shapes, {} tree", bytes(geometry.geometry_bytes as u64), bytes(geometry.bvh_bytes as u64)),
     );
     let animation = &description.animation;
-    let seconds = f64::from(animation.frames) / animation.frames_per_second;
-    row("animation", format!("{}, {seconds} s", counted(animation.frames.into(), "frame")));
+    row("animation", length(animation.frames, animation.frames_per_second));
     lines.join("\n")
+}
+
+/// `30 frames, 1.25 s`.
+fn length(frames: u32, frames_per_second: f64) -> String {
+    if frames <= 1 {
+        return "none".into();
+    }
+    let seconds = (f64::from(frames) / frames_per_second * 1000.0).round() / 1000.0;
+    format!("{}, {seconds} s", counted(frames.into(), "frame"))
 }
 
 fn bounds_in_words(bounds: &Aabb) -> String {

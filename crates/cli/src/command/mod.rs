@@ -15,22 +15,22 @@ mod schema;
 /// Every command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Renders a picture, or the pictures of an animation
+    /// Render a picture, or the pictures of an animation
     #[command(after_help = render::EXAMPLES)]
     Render(Box<crate::args::RenderArgs>),
-    /// Says all that is wrong with a scene, without rendering it
+    /// Say all that is wrong with a scene, without rendering it
     Check(check::Check),
-    /// Says what is in a scene
+    /// Say what is in a scene, or what a picture says about itself
     Info(info::Info),
-    /// Writes the JSON Schema of the scene format
+    /// Write the JSON Schema of the scene format
     Schema,
-    /// Writes any readable scene as scene JSON
+    /// Write any readable scene as scene JSON
     Convert(convert::Convert),
-    /// Says how different two pictures are
+    /// Say how different two pictures are
     Compare(compare::Compare),
-    /// Lists the built-in scenes
+    /// List the built-in scenes
     Scenes,
-    /// Measures this machine
+    /// Measure this machine
     Bench(bench::Bench),
 }
 

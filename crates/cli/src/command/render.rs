@@ -8,6 +8,7 @@ use crate::interrupt::Interrupts;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::{Plan, Shot};
 use crate::progress::{Reporter, watched};
+use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
 use juggler::imaging::{self, Header, RowWriter, atomic};
@@ -24,6 +25,7 @@ Examples:
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
   juggler render juggler --frames 0..30 -o 'frame_####.png'
   juggler render scene.json -o - | display                   the picture to another program
+  juggler info scene.png                                     how that picture was made
 
 Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed, 130 interrupted.";
 
@@ -84,7 +86,8 @@ impl Session {
         let picture = Picture::new(scene, &self.plan.settings)?;
         self.warn(&picture);
         let take = Take { shot, picture: &picture, load, build: built.elapsed(), start };
-        let header = picture.header(self.plan.encoding.options);
+        let mut header = picture.header(self.plan.encoding.options);
+        header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, shot)));
         self.check_memory(&picture, &header)?;
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,

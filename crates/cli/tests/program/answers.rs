@@ -1,7 +1,8 @@
 //! Commands that answer: help, lists, checks, comparisons.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, Run, SCENE};
 use std::fs;
+use std::io::Write;
 use std::process::Stdio;
 
 #[test]
@@ -63,6 +64,52 @@ fn what_is_in_a_scene() {
     let json: serde_json::Value = serde_json::from_str(&folder.good("info ball.json --json").stdout).unwrap();
     assert_eq!((&json["geometry"]["shapes"], &json["animation"]["frames"]), (&2.into(), &4.into()));
     assert_eq!(json["cameras"], serde_json::json!(["main", "top"]));
+}
+
+#[test]
+fn a_picture_says_how_it_was_made() {
+    let folder = Folder::new();
+    let flags = "--seed 7 --samples 3 --frame 2";
+    for name in ["a.png", "a.exr", "a.hdr"] {
+        folder.good(&format!("render ball.json -q --threads 2 {flags} -o {name}"));
+        let words = folder.good(&format!("info {name}")).stdout;
+        let fingerprint = folder.stats(&format!("ball.json {flags}"))["fingerprint"].as_str().unwrap().to_owned();
+        let program = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
+        let command = "juggler render ball.json --samples 3 --frame 2 --seed 7";
+        for said in ["16x9", program, &fingerprint, "Seed         7\n", "Samples      3\n", command] {
+            assert!(words.contains(said), "{name}: {said} in {words}");
+        }
+        let json: serde_json::Value =
+            serde_json::from_str(&folder.good(&format!("info {name} --json")).stdout).unwrap();
+        assert_eq!((&json["size"], &json["metadata"]["Command"]), (&serde_json::json!([16, 9]), &command.into()));
+    }
+    for name in ["a.jpg", "a.webp", "a.pfm"] {
+        folder.good(&format!("render ball.json -q -o {name}"));
+        assert!(folder.good(&format!("info {name}")).stdout.contains("16x9"), "{name}");
+    }
+    fs::write(folder.path("cut.png"), &fs::read(folder.path("a.png")).unwrap()[..20]).unwrap();
+    folder.bad("info cut.png", 3);
+}
+
+#[test]
+fn a_scene_comes_through_standard_input() {
+    let folder = Folder::new();
+    let piped = |line: &str, text: &[u8]| {
+        let mut command = folder.command(line);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // A program that has seen enough closes its end.
+        let _ = child.stdin.take().unwrap().write_all(text);
+        Run::of(child.wait_with_output().unwrap())
+    };
+    let run = piped("render - -q", SCENE.as_bytes());
+    assert_eq!((run.status, run.stderr.as_str(), folder.files()), (0, "", vec!["picture.png".to_owned()]));
+    folder.good("render ball.json -q");
+    folder.good("compare picture.png ball.png");
+    assert!(piped("check -", SCENE.as_bytes()).stdout.contains("no mistakes"));
+    let wrong = piped("check -", b"{\"version\": 1, \"objets\": []}");
+    assert!(wrong.status == 1 && wrong.stderr.contains("standard input:1:"), "{}", wrong.stderr);
+    assert_eq!(piped("render -", &[0xff, 0xfe, 0]).status, 2);
+    assert_eq!(piped("render -", &[]).status, 2);
 }
 
 #[test]

@@ -30,6 +30,7 @@ fn wrong_command_lines() {
         "render ball.json --quality 90",
         "render ball.json -o a.tga",
         "render ball.json -o a",
+        "render ball.json --output=",
         "render ball.json -o - --stats -",
         "render ball.json -o - --frames 0..2",
         "render ball.json -o a.webp --size 20000x1",
@@ -59,7 +60,8 @@ fn files_that_cannot_be() {
     let folder = Folder::new();
     fs::create_dir(folder.path("folder.png")).unwrap();
     fs::write(folder.path("junk.png"), "no picture").unwrap();
-    folder.bad("render ball.json -o none/there.png", 3);
+    let message = folder.bad("render ball.json -o none/there.png", 3);
+    assert_eq!(message, "error: cannot write `none/there.png`: no such file or folder\n");
     folder.bad("render ball.json -o folder.png", 3);
     folder.bad("render ball.json -q -o a.png --stats none/there.json", 3);
     folder.bad("compare junk.png junk.png", 3);
@@ -67,6 +69,26 @@ fn files_that_cannot_be() {
     folder.bad("convert ball.json none/there.json", 3);
     folder.bad("render folder.png", 2);
     assert_eq!(folder.files(), ["a.png", "folder.png", "junk.png"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn full_disks_are_failures_of_the_system() {
+    let folder = Folder::new();
+    for format in ["png", "jpg", "exr", "hdr", "webp", "pfm"] {
+        let message = folder.bad(&format!("render ball.json -q -o /dev/full --format {format}"), 3);
+        assert_eq!(message, "error: cannot write `/dev/full`: no space is left\n", "{format}");
+        let mut command = folder.command(&format!("render ball.json -q -o - --format {format}"));
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        assert_eq!(command.stdout(full).output().unwrap().status.code(), Some(3), "{format}");
+    }
+    folder.bad("render ball.json -q --stats /dev/full", 3);
+    folder.bad("convert ball.json /dev/full", 3);
+    folder.good("convert ball.json /dev/null");
+    for line in ["scenes", "schema", "info ball.json", "render ball.json"] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        assert_eq!(folder.command(line).stdout(full).output().unwrap().status.code(), Some(3), "{line}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! are scene-referred and no tone curve applies. The header is written here, in a fixed order, since the bytes of
 //! equal pictures must be equal; blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
 
-use super::{ExrCompression, Header, Inspected, ReadSeek, RowWriter, SampleDepth, Source};
+use super::{ExrCompression, Header, Inspected, ReadSeek, RowWriter, SampleDepth, Source, Texts};
 use crate::output::{Destination, WriteSeek};
 use crate::{Format, ImageError};
 use exr::block::{BlockIndex, UncompressedBlock};
@@ -209,7 +209,7 @@ pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspec
 }
 
 /// The data window's left, top, right and bottom, and all texts.
-fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Vec<(String, String)>)> {
+fn attributes(bytes: &mut dyn ReadSeek) -> io::Result<([i64; 4], Texts)> {
     let (mut window, mut texts) = ([0, 0, -1, -1], Vec::new());
     let mut eight = [0; 8];
     bytes.read_exact(&mut eight)?;

@@ -213,8 +213,10 @@ pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Facts,
     Ok(Facts { format: source.format, width, height, metadata })
 }
 
-/// Width and height, and texts by key.
-type Inspected = ((u32, u32), Vec<(String, String)>);
+/// Texts by key, in order.
+type Texts = Vec<(String, String)>;
+/// Width and height, and texts.
+type Inspected = ((u32, u32), Texts);
 
 /// Linear light of the 256 levels of sRGB: by the curve that wrote them, so that equal levels are equal light
 /// whatever the format.

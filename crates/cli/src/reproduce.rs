@@ -1,0 +1,91 @@
+//! The command that a picture carries: what made it, without what cannot change it (output, threads, progress), so
+//! that equal pictures are equal files.
+
+use crate::plan::{Moments, Plan, Shot};
+use juggler::Settings;
+use juggler::imaging::{Options, SampleDepth};
+use juggler::tracer::render::Rect;
+use std::fmt::Display;
+
+/// The shortest command line that renders this picture again.
+pub fn command(plan: &Plan, shot: &Shot) -> String {
+    let Settings { size, samples, integrator, max_depth, camera, seed, crop, curve, exposure_stops } = &plan.settings;
+    let Options { png_16_bit, jpeg_quality, exr_depth, .. } = plan.encoding.options;
+    let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
+    words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
+    words.flag("--samples", *samples);
+    words.flag("--integrator", integrator.as_deref().map(quoted));
+    words.flag("--max-depth", *max_depth);
+    words.flag("--camera", camera.as_deref().map(quoted));
+    match plan.moments {
+        Moments::At(seconds) => words.flag("--at", Some(seconds)),
+        Moments::Frame(_) | Moments::Frames(_) => words.flag("--frame", Some(shot.frame).filter(|frame| *frame != 0.0)),
+    }
+    words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
+    words.flag("--seed", *seed);
+    words.flag("--tone", curve.as_deref().map(quoted));
+    words.flag("--exposure", *exposure_stops);
+    words.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
+    words.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
+    words.0
+}
+
+struct Words(String);
+
+impl Words {
+    fn flag(&mut self, name: &str, value: Option<impl Display>) {
+        if let Some(value) = value {
+            self.0.push_str(&format!(" {name} {value}"));
+        }
+    }
+}
+
+/// As a shell takes it for one word. Line breaks, which some picture files cannot hold, become `?`.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./,:=@+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    let line: String = word.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+    format!("'{}'", line.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::RenderArgs;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        render: RenderArgs,
+    }
+
+    fn commands(words: &[&str]) -> Vec<String> {
+        let line = Line::try_parse_from(["render"].iter().chain(words)).unwrap();
+        let plan = Plan::new(line.render).unwrap();
+        plan.shots(30, 24.0).unwrap().iter().map(|shot| command(&plan, shot)).collect()
+    }
+
+    #[test]
+    fn what_decides_the_picture_is_said_and_nothing_else() {
+        assert_eq!(commands(&["a", "-o", "b.png", "--threads", "3", "--quiet", "--frame", "0"]), ["juggler render a"]);
+        let all = "a.json --size 4x3 --samples 2 --integrator path --max-depth 5 --camera top --crop 1,2,3,4 --seed 7 \
+                   --tone gamma --exposure -0.5 --bits 16";
+        let words: Vec<&str> = all.split_whitespace().collect();
+        assert_eq!(commands(&words), [format!("juggler render {}", words.join(" "))]);
+        assert_eq!(commands(&["a", "-o", "b.jpg", "--quality", "7"]), ["juggler render a --quality 7"]);
+        assert_eq!(commands(&["a", "--at", "0.5"]), ["juggler render a --at 0.5"]);
+        assert_eq!(commands(&["a", "--frames", "0..2"]), ["juggler render a", "juggler render a --frame 1"]);
+    }
+
+    #[test]
+    fn words_are_quoted_where_a_shell_needs_it() {
+        assert_eq!(commands(&["it's a.json"]), [r"juggler render 'it'\''s a.json'"]);
+        assert_eq!(
+            (quoted("größe/a.json"), quoted(""), quoted("a\nb")),
+            ("größe/a.json".into(), "''".into(), "'a?b'".into())
+        );
+    }
+}
