@@ -68,6 +68,11 @@ pub struct Limb {
     #[serde(default = "eight")]
     #[schemars(inner(range(min = 1, max = 100_000)))]
     pub counts: [u32; 2],
+    /// Whether the bones keep their lengths although `plane_normal` is not perpendicular to the line between the
+    /// ends. Without it the joint comes nearer to that line, as in the Juggler of 2010: its forearms are up to 1 %
+    /// short.
+    #[serde(default = "yes")]
+    pub keep_lengths: bool,
     /// Radii at `from`, at the joint and at `to`; in between they change in even steps.
     #[schemars(transform = positive_items)]
     pub radii: [f32; 3],
@@ -114,7 +119,8 @@ impl Limb {
     }
 
     /// Where the bones meet: with D = |to − from|, V the unit vector that way and U = V × normal, it is
-    /// from + x U + y V for y = (A² − B² + D²) / 2D and x = √(A² − y²) (Birken 2010, step 16).
+    /// from + x U + y V for y = (A² − B² + D²) / 2D and x = √(A² − y²) (Birken 2010, step 16). U is shorter than 1
+    /// when the normal is not perpendicular to V, and made 1 long to keep the lengths.
     fn joint(&self) -> Result<DVec3, Misplaced> {
         let whole = |message: String| Misplaced::new("", message);
         let (from, to) = (self.from.as_dvec3(), self.to.as_dvec3());
@@ -132,9 +138,11 @@ impl Limb {
             )));
         }
         let v = (to - from) / distance;
-        let u = v.cross(self.plane_normal.as_dvec3()).try_normalize();
+        let normal = self.plane_normal.as_dvec3().try_normalize();
+        let u = normal.map(|normal| v.cross(normal)).filter(|u| u.length_squared() > 1e-12);
         let wrong = || Misplaced::new("plane_normal", "`plane_normal` must not be zero or point along the limb");
         let u = u.ok_or_else(wrong)?;
+        let u = if self.keep_lengths { u.normalize() } else { u };
         let y = (a * a - b * b + distance * distance) / (2.0 * distance);
         let x = (a * a - y * y).max(0.0).sqrt();
         Ok(from + u * x + v * y)
