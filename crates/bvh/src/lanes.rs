@@ -19,6 +19,15 @@ pub(crate) fn less(a: &[f32; 8], b: &[f32; 8]) -> u32 {
     f32x8::new(*a).simd_lt(f32x8::new(*b)).to_bitmask()
 }
 
+/// The inverses, NaN where one overflows though the number is not zero.
+#[inline(always)]
+pub(crate) fn inverse(numbers: &[f32; 8]) -> [f32; 8] {
+    let numbers = f32x8::new(*numbers);
+    let inverse = f32x8::ONE / numbers;
+    let overflows = inverse.abs().simd_gt(f32x8::splat(f32::MAX)) & numbers.simd_ne(f32x8::ZERO);
+    overflows.select(f32x8::splat(f32::NAN), inverse).to_array()
+}
+
 /// The smaller of two, the second when one is NaN.
 #[inline(always)]
 pub(crate) fn min(a: f32, b: f32) -> f32 {

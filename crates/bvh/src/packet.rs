@@ -127,7 +127,13 @@ impl Bvh {
             while active != 0 {
                 let lane = active.trailing_zeros() as usize;
                 active &= active - 1;
-                if self.any_below(child, &mut stack, base + lane, &rays[lane], leaf) {
+                let ray = &rays[lane];
+                let met = if child.is_leaf() {
+                    leaf.any(base + lane, ray, child.items())
+                } else {
+                    self.any_below(child, &mut stack, base + lane, ray, leaf)
+                };
+                if met {
                     occluded[lane] = true;
                     waiting &= !(1 << lane);
                 }

@@ -15,9 +15,9 @@
 //! (interval arithmetic: Boulos, Wald, Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray
 //! Packets", 2006). Rounding is monotonic, so the interval's result bounds that of each ray exactly.
 
-use crate::lanes::{less_or_equal, max, min};
+use crate::lanes::{self, less_or_equal, max, min};
 use crate::node::WIDTH;
-use juggler_math::{Aabb, Ray, Vec3};
+use juggler_math::{Aabb, Ray};
 
 const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
 const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
@@ -78,57 +78,59 @@ impl Slabs {
     }
 }
 
-/// Extremes of several rays.
+/// Extremes of several rays: origin, direction, `t_min`, `t_max`, side by side in eight lanes, and which of them
+/// have the sign bit.
 struct Interval {
-    origin: Aabb,
-    direction: Aabb,
-    any_negative: [u32; 3],
-    all_negative: [u32; 3],
-    t_min: f32,
-    t_max: f32,
+    low: [f32; WIDTH],
+    high: [f32; WIDTH],
+    any_negative: [u32; WIDTH],
+    all_negative: [u32; WIDTH],
 }
 
 impl Interval {
     #[inline(always)]
     fn of(ray: &Ray) -> Self {
-        let point = |p: Vec3| Aabb { min: p, max: p };
-        let bits = ray.direction.to_array().map(f32::to_bits);
-        let (t_min, t_max) = (ray.t_min, ray.t_max);
-        let (origin, direction) = (point(ray.origin), point(ray.direction));
-        Self { origin, direction, any_negative: bits, all_negative: bits, t_min, t_max }
+        let numbers = Self::numbers(ray);
+        let bits = numbers.map(f32::to_bits);
+        Self { low: numbers, high: numbers, any_negative: bits, all_negative: bits }
+    }
+
+    #[inline(always)]
+    fn numbers(ray: &Ray) -> [f32; WIDTH] {
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
+        [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max]
     }
 
     #[inline(always)]
     fn add(&mut self, ray: &Ray) {
-        self.origin = self.origin.with_point(ray.origin);
-        self.direction = self.direction.with_point(ray.direction);
-        for (axis, component) in ray.direction.to_array().into_iter().enumerate() {
-            self.any_negative[axis] |= component.to_bits();
-            self.all_negative[axis] &= component.to_bits();
+        let numbers = Self::numbers(ray);
+        for (i, number) in numbers.into_iter().enumerate() {
+            self.low[i] = min(number, self.low[i]);
+            self.high[i] = max(number, self.high[i]);
+            self.any_negative[i] |= number.to_bits();
+            self.all_negative[i] &= number.to_bits();
         }
-        self.t_min = self.t_min.min(ray.t_min);
-        self.t_max = self.t_max.max(ray.t_max);
     }
 
     /// Distances below `t_min >= 0` are cut off anyway, so the near planes only need their smallest positive
     /// distance (smallest inverse) and the far planes their largest.
     #[inline(always)]
     fn slabs(&self) -> Option<Slabs> {
-        let mixed = (0..3).any(|axis| (self.any_negative[axis] ^ self.all_negative[axis]) >> 31 != 0);
-        if mixed || self.t_min < 0.0 {
+        let mixed = (3..6).any(|lane| (self.any_negative[lane] ^ self.all_negative[lane]) >> 31 != 0);
+        if mixed || self.low[6] < 0.0 {
             return None;
         }
-        let side = self.any_negative.map(|bits| (bits >> 31) as usize);
-        let pick =
-            |low: Vec3, high: Vec3| std::array::from_fn(|axis| if side[axis] == 0 { low[axis] } else { high[axis] });
+        let side: [usize; 3] = std::array::from_fn(|axis| (self.any_negative[axis + 3] >> 31) as usize);
+        let pick = |near: [&[f32; WIDTH]; 2], first: usize| std::array::from_fn(|axis| near[side[axis]][first + axis]);
+        let direction: [[f32; 3]; 2] = [pick([&self.high, &self.low], 3), pick([&self.low, &self.high], 3)];
         Some(Slabs {
             side,
-            near_origin: pick(self.origin.max, self.origin.min),
-            far_origin: pick(self.origin.min, self.origin.max),
-            near_inverse: pick(self.direction.max, self.direction.min).map(inverse),
-            far_inverse: pick(self.direction.min, self.direction.max).map(|d| inverse(d) * WIDEN),
-            t_min: self.t_min,
-            t_max: cull_distance(self.t_max),
+            near_origin: pick([&self.high, &self.low], 0),
+            far_origin: pick([&self.low, &self.high], 0),
+            near_inverse: direction[0].map(inverse),
+            far_inverse: direction[1].map(|d| inverse(d) * WIDEN),
+            t_min: self.low[6],
+            t_max: cull_distance(self.high[7]),
         })
     }
 }
@@ -154,13 +156,17 @@ impl Lanes {
         };
         for (lane, ray) in rays.iter().take(WIDTH).enumerate() {
             for axis in 0..3 {
-                lanes.side[axis] = usize::from(ray.direction[axis].is_sign_negative());
                 lanes.origin[axis][lane] = ray.origin[axis];
-                lanes.inverse[axis][lane] = inverse(ray.direction[axis]);
+                lanes.inverse[axis][lane] = ray.direction[axis];
             }
             lanes.t_min[lane] = ray.t_min;
-            lanes.t_max[lane] = cull_distance(ray.t_max);
+            lanes.t_max[lane] = ray.t_max;
         }
+        for (axis, inverses) in lanes.inverse.iter_mut().enumerate() {
+            lanes.side[axis] = usize::from(inverses[0].is_sign_negative());
+            *inverses = lanes::inverse(inverses);
+        }
+        lanes.t_max = lanes.t_max.map(cull_distance);
         lanes
     }
 

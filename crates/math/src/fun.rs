@@ -116,7 +116,7 @@ pub fn log2(x: f32) -> f32 {
 
 /// `x` to the power of `y`. Whole exponents up to 1024 go by repeated squaring.
 pub fn powf(x: f32, y: f32) -> f32 {
-    if (0.0..=1024.0).contains(&y) && y == y.trunc() { powi(x, y as u32) } else { libm::powf(x, y) }
+    if (0.0..=1024.0).contains(&y) && y == (y as u32) as f32 { powi(x, y as u32) } else { libm::powf(x, y) }
 }
 
 /// `x` to a whole power, by squaring.

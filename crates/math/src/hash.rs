@@ -2,6 +2,7 @@
 
 /// Mixes 32 bits so that each input bit reaches every output bit (the `lowbias32` constants of Chris
 /// Wellons' hash-prospector search, 2018).
+#[inline]
 pub const fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
@@ -11,11 +12,13 @@ pub const fn mix(mut x: u32) -> u32 {
 }
 
 /// A hash of a pair that depends on the order.
+#[inline]
 pub const fn combine(a: u32, b: u32) -> u32 {
     mix(a ^ mix(b.wrapping_add(0x9e37_79b9)).wrapping_add(a << 6))
 }
 
 /// 24 random bits as a float in [0, 1).
+#[inline]
 pub fn unit_f32(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }

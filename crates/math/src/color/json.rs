@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// The schema's view of a colour.
+/// A colour: linear `[red, green, blue]`, one number for a grey, or sRGB as `"#rrggbb"`.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Color")]

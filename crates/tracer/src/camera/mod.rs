@@ -24,7 +24,7 @@ mod contract;
 
 pub use field_of_view::{Screen, ViewPlane};
 pub use pose::Move;
-pub use projection::Projection;
+pub use projection::{LANES, Projection};
 
 /// Why a camera cannot be: the field at fault and what it should be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -3,6 +3,9 @@
 use super::pose::Axes;
 use juggler_math::{Ray, UVec2, Vec2, Vec3, warp};
 
+/// Rays that [`Projection::rays`] makes side by side.
+pub const LANES: usize = 8;
+
 /// A camera for one size of picture: all that a ray needs, nothing to look up.
 ///
 /// The film stands one unit in front of the eye (for a parallel projection: through the eye).
@@ -60,10 +63,10 @@ impl Projection {
         matches!(self.lens, Lens::Disk { .. })
     }
 
-    /// The ray through a point of the film in pixels, for `lens` in the unit square; `None` where the
-    /// film sees nothing. Its direction is a unit vector; `time` is handed on.
+    /// The ray through a point of the film in pixels, for `lens` in the unit square. Its direction is a unit
+    /// vector; `time` is handed on.
     #[inline]
-    pub fn ray(&self, film: Vec2, lens: Vec2, time: f32) -> Option<Ray> {
+    pub fn ray(&self, film: Vec2, lens: Vec2, time: f32) -> Ray {
         let point = self.corner + self.right * film.x + self.down * film.y;
         let (origin, direction) = match &self.lens {
             Lens::Pinhole => (self.origin, point.normalize()),
@@ -74,6 +77,29 @@ impl Projection {
             }
             Lens::Parallel { forward } => (self.origin + point, *forward),
         };
-        Some(Ray { time, ..Ray::new(origin, direction) })
+        Ray { time, ..Ray::new(origin, direction) }
+    }
+
+    /// The first `count` of eight rays at once, the same as [`Projection::ray`] gives one by one; `films` and
+    /// `lenses` hold all x and all y.
+    #[inline]
+    pub fn rays(&self, films: &[[f32; LANES]; 2], lenses: &[Vec2; LANES], count: usize, rays: &mut Vec<Ray>) {
+        let [u, v] = films;
+        if self.lens != Lens::Pinhole {
+            rays.extend((0..count.min(LANES)).map(|i| self.ray(Vec2::new(u[i], v[i]), lenses[i], 0.0)));
+            return;
+        }
+        let Self { corner, right, down, .. } = self;
+        let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            x[i] = corner.x + right.x * u[i] + down.x * v[i];
+            y[i] = corner.y + right.y * u[i] + down.y * v[i];
+            z[i] = corner.z + right.z * u[i] + down.z * v[i];
+            let inverse = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+            x[i] *= inverse;
+            y[i] *= inverse;
+            z[i] *= inverse;
+        }
+        rays.extend((0..count.min(LANES)).map(|i| Ray::new(self.origin, Vec3::new(x[i], y[i], z[i]))));
     }
 }

@@ -6,6 +6,7 @@
 
 use super::{Emit, Integrator, Path};
 use crate::world::{Vertex, World};
+use juggler_math::Ray;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -15,10 +16,8 @@ use serde::{Deserialize, Serialize};
 pub struct Albedo {}
 
 impl Integrator for Albedo {
-    fn vertex(&self, world: &World, _path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
-        if let Some(vertex) = vertex {
-            emit.add(world.phong(vertex).diffuse);
-        }
+    fn vertex(&self, world: &World, _ray: &Ray, _path: &Path, vertex: &Vertex, emit: &mut Emit) {
+        emit.add(world.phong(vertex).diffuse);
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::{Emit, Integrator, Path};
 use crate::world::{Vertex, World};
-use juggler_math::{Frame, Rgb, warp};
+use juggler_math::{Frame, Ray, Rgb, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,19 +20,19 @@ pub struct AmbientOcclusion {
 }
 
 impl Integrator for AmbientOcclusion {
-    fn vertex(&self, world: &World, path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
-        let Some(vertex) = vertex else {
-            emit.add(Rgb::WHITE);
-            return;
-        };
+    fn vertex(&self, world: &World, ray: &Ray, path: &Path, vertex: &Vertex, emit: &mut Emit) {
         let surface = &vertex.surface;
-        let facing = surface.normal.dot(path.ray.direction) < 0.0;
+        let facing = surface.normal.dot(ray.direction) < 0.0;
         let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });
         let mut sampler = path.sampler;
         let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
         let extent = world.bounds().extent();
         let distance = self.distance.unwrap_or_else(|| 0.5 * extent.max(juggler_math::Vec3::ZERO).length());
-        emit.if_visible(surface.spawn(direction, path.ray.time).up_to(distance), Rgb::WHITE);
+        emit.if_visible(surface.spawn(direction, ray.time).up_to(distance), Rgb::WHITE);
+    }
+
+    fn escape(&self, _world: &World, _ray: &Ray, emit: &mut Emit) {
+        emit.add(Rgb::WHITE);
     }
 }
 

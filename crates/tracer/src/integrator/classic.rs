@@ -11,8 +11,8 @@ use super::{Emit, Integrator, Path};
 use crate::bsdf::{Cone, Highlight, Phong, cone, fresnel};
 use crate::sampler::Sampler;
 use crate::surface::Surface;
-use crate::world::{Vertex, World};
-use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
+use crate::world::{Lamp, Vertex, World};
+use juggler_math::{Ray, Rgb, Vec2, Vec3, fun, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +41,7 @@ impl Default for Classic {
 /// A vertex as seen by the one who looks.
 struct Seen<'a> {
     surface: &'a Surface,
-    phong: Phong,
+    phong: &'a Phong,
     /// Unit, towards where the ray came from.
     wo: Vec3,
     /// Unit shading normal on the viewer's side.
@@ -52,32 +52,32 @@ struct Seen<'a> {
 }
 
 impl Integrator for Classic {
-    fn vertex(&self, world: &World, path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
-        let Some(vertex) = vertex else {
-            emit.add(world.background(&path.ray));
-            return;
-        };
-        let seen = Seen::new(world, path, vertex);
+    fn vertex(&self, world: &World, ray: &Ray, path: &Path, vertex: &Vertex, emit: &mut Emit) {
+        let phong = world.phong(vertex);
+        let seen = Seen::new(ray, &vertex.surface, &phong);
         let mut sampler = path.sampler;
         self.ambient(world, &seen, sampler, emit);
         sampler.skip(1);
-        for number in 0..world.lights().len() {
-            light(world, number, &seen, &sampler, emit);
+        for (number, lamp) in world.lamps().iter().enumerate() {
+            light(lamp, number, &seen, &sampler, emit);
             sampler.skip(1);
         }
         if path.depth < self.max_depth {
             self.follow(path, &seen, &sampler, emit);
         }
     }
+
+    fn escape(&self, world: &World, ray: &Ray, emit: &mut Emit) {
+        emit.add(world.background(ray));
+    }
 }
 
 impl<'a> Seen<'a> {
-    fn new(world: &World, path: &Path, vertex: &'a Vertex) -> Self {
-        let surface = &vertex.surface;
-        let wo = -path.ray.direction;
+    fn new(ray: &Ray, surface: &'a Surface, phong: &'a Phong) -> Self {
+        let wo = -ray.direction;
         let outside = surface.normal.dot(wo) >= 0.0;
         let normal = if outside { surface.shading_normal } else { -surface.shading_normal };
-        Self { surface, phong: world.phong(vertex), wo, normal, outside, time: path.ray.time }
+        Self { surface, phong, wo, normal, outside, time: ray.time }
     }
 }
 
@@ -99,7 +99,7 @@ impl Classic {
 
     /// Mirror and transparency.
     fn follow(&self, path: &Path, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
-        let phong = &seen.phong;
+        let phong = seen.phong;
         if phong.mirror.is_black() && phong.transparency.is_black() {
             return;
         }
@@ -153,12 +153,11 @@ impl Bundle<'_> {
 }
 
 /// What one light brings, from one or more places on it.
-fn light(world: &World, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
-    let light = &world.lights()[number];
-    let count = light.shadow_samples().max(1);
-    let share = 1.0 / count as f32;
-    for i in 0..count {
-        let u = if light.is_point() { Vec2::ZERO } else { sampler.part(i, count).next_2d() };
+fn light(lamp: &Lamp, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
+    let Lamp { light, samples, is_point } = lamp;
+    let share = 1.0 / *samples as f32;
+    for i in 0..*samples {
+        let u = if *is_point { Vec2::ZERO } else { sampler.part(i, *samples).next_2d() };
         let Some(sample) = light.sample(seen.surface.point, u) else { continue };
         let reflected = local(seen, sample.wi);
         if reflected.is_black() {
@@ -171,7 +170,7 @@ fn light(world: &World, number: usize, seen: &Seen, sampler: &Sampler, emit: &mu
 
 /// Diffuse light and highlight for light from `wi`.
 fn local(seen: &Seen, wi: Vec3) -> Rgb {
-    let phong = &seen.phong;
+    let phong = seen.phong;
     let facing = seen.normal.dot(wi);
     let cosine = if phong.both_sides { facing.abs() } else { facing };
     if cosine <= 0.0 {

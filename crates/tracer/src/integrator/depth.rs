@@ -6,7 +6,7 @@
 
 use super::{Emit, Integrator, Path};
 use crate::world::{Vertex, World};
-use juggler_math::Rgb;
+use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,10 +20,8 @@ pub struct Depth {
 }
 
 impl Integrator for Depth {
-    fn vertex(&self, _world: &World, path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
-        if vertex.is_some() {
-            emit.add(Rgb::splat(path.ray.t_max / self.far.unwrap_or(1.0)));
-        }
+    fn vertex(&self, _world: &World, ray: &Ray, _path: &Path, _vertex: &Vertex, emit: &mut Emit) {
+        emit.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)));
     }
 }
 

@@ -1,29 +1,32 @@
 //! What an integrator may do at a vertex.
 
-use super::Path;
 use crate::sampler::Sampler;
 use juggler_math::{Ray, Rgb};
 
-/// A ray in the engine's queues, apart from the [`Ray`] itself.
+/// What a ray in flight carries along.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flight {
+pub struct Path {
+    /// What its radiance is worth to the sample.
     pub weight: Rgb,
-    pub slot: u32,
+    /// Vertices before the next one.
     pub depth: u32,
+    /// Numbers of the next vertex.
     pub sampler: Sampler,
+    /// Sample of the engine's pass.
+    pub(crate) slot: u32,
 }
 
 /// Rays in flight, in order of their slots.
 #[derive(Debug, Default)]
 pub(crate) struct Queue {
     pub rays: Vec<Ray>,
-    pub flights: Vec<Flight>,
+    pub paths: Vec<Path>,
 }
 
 impl Queue {
-    pub fn push(&mut self, ray: Ray, flight: Flight) {
+    pub fn push(&mut self, ray: Ray, path: Path) {
         self.rays.push(ray);
-        self.flights.push(flight);
+        self.paths.push(path);
     }
 
     pub fn len(&self) -> usize {
@@ -32,7 +35,7 @@ impl Queue {
 
     pub fn clear(&mut self) {
         self.rays.clear();
-        self.flights.clear();
+        self.paths.clear();
     }
 }
 
@@ -40,8 +43,8 @@ impl Queue {
 #[derive(Debug, Default)]
 pub(crate) struct ShadowQueue {
     pub rays: Vec<Ray>,
-    pub radiance: Vec<Rgb>,
-    pub slots: Vec<u32>,
+    /// What each ray adds to which slot.
+    pub gains: Vec<(u32, Rgb)>,
 }
 
 /// Everything that a segment of the queue brings forth; kept and emptied by the engine.
@@ -51,6 +54,8 @@ pub(crate) struct Harvest {
     pub radiance: Vec<Rgb>,
     /// One queue a light, whose rays run much the same way, and at the end one for rays that do not.
     pub shadows: Vec<ShadowQueue>,
+    /// Shadow rays that wait, in all queues.
+    pub pending: usize,
     /// Rays that go on.
     pub next: Queue,
 }
@@ -62,11 +67,6 @@ impl Harvest {
         self.radiance.resize(slots, Rgb::BLACK);
         self.shadows.resize_with(lights.min(MAX_LIGHT_QUEUES) + 1, ShadowQueue::default);
     }
-
-    /// Shadow rays that wait.
-    pub fn pending(&self) -> usize {
-        self.shadows.iter().map(|queue| queue.rays.len()).sum()
-    }
 }
 
 /// More lights than this share queues.
@@ -75,28 +75,25 @@ const MAX_LIGHT_QUEUES: usize = 64;
 /// What an integrator may do at a vertex: add, ask, go on.
 pub struct Emit<'a> {
     harvest: &'a mut Harvest,
-    weight: Rgb,
-    slot: u32,
-    depth: u32,
-    sampler: Sampler,
+    path: &'a Path,
 }
 
 impl<'a> Emit<'a> {
-    pub(crate) fn new(harvest: &'a mut Harvest, path: &Path, slot: u32) -> Self {
-        Self { harvest, weight: path.weight, slot, depth: path.depth, sampler: path.sampler }
+    pub(crate) fn new(harvest: &'a mut Harvest, path: &'a Path) -> Self {
+        Self { harvest, path }
     }
 
     /// Adds to the sample, times the path's weight.
     #[inline]
     pub fn add(&mut self, radiance: Rgb) {
-        self.harvest.radiance[self.slot as usize] += radiance * self.weight;
+        self.harvest.radiance[self.path.slot as usize] += radiance * self.path.weight;
     }
 
     /// Adds, times the path's weight, what of `radiance` comes through along `ray` from light number `light`.
     #[inline]
     pub fn if_light_visible(&mut self, light: usize, ray: Ray, radiance: Rgb) {
-        let last = self.harvest.shadows.len() - 1;
-        self.push_shadow(light % last.max(1), ray, radiance);
+        let queues = self.harvest.shadows.len() - 1;
+        self.push_shadow(if light < queues { light } else { light % queues.max(1) }, ray, radiance);
     }
 
     /// The same for a ray of no particular direction.
@@ -106,25 +103,25 @@ impl<'a> Emit<'a> {
     }
 
     fn push_shadow(&mut self, queue: usize, ray: Ray, radiance: Rgb) {
-        let radiance = radiance * self.weight;
+        let radiance = radiance * self.path.weight;
         if radiance.is_black() {
             return;
         }
+        self.harvest.pending += 1;
         let queue = &mut self.harvest.shadows[queue];
         queue.rays.push(ray);
-        queue.radiance.push(radiance);
-        queue.slots.push(self.slot);
+        queue.gains.push((self.path.slot, radiance));
     }
 
     /// Follows `ray`, the `child`-th that leaves this vertex; what it finds counts `weight` times as much.
     #[inline]
     pub fn go_on(&mut self, ray: Ray, weight: Rgb, child: u32) {
-        let flight = Flight {
-            weight: self.weight * weight,
-            slot: self.slot,
-            depth: self.depth + 1,
-            sampler: self.sampler.branch(child),
+        let path = Path {
+            weight: self.path.weight * weight,
+            depth: self.path.depth + 1,
+            sampler: self.path.sampler.branch(child),
+            slot: self.path.slot,
         };
-        self.harvest.next.push(ray, flight);
+        self.harvest.next.push(ray, path);
     }
 }

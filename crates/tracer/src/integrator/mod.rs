@@ -4,9 +4,8 @@
 //! (module `render`). Radiance is linear in its rays, so even a tree of mirror, glass and glossy rays is
 //! a queue of weighted rays.
 
-use crate::sampler::Sampler;
 use crate::world::{Vertex, World};
-use juggler_math::{Ray, Rgb};
+use juggler_math::Ray;
 
 mod albedo;
 mod ambient_occlusion;
@@ -15,27 +14,15 @@ mod depth;
 mod emit;
 mod normals;
 
-pub use emit::Emit;
-pub(crate) use emit::{Flight, Harvest, Queue};
-
-/// One ray in flight, as the integrator sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct Path {
-    /// The ray that arrived, its end at the vertex.
-    pub ray: Ray,
-    /// What its radiance is worth to the sample.
-    pub weight: Rgb,
-    /// Vertices before this one.
-    pub depth: u32,
-    /// Numbers of this vertex.
-    pub sampler: Sampler,
-}
+pub use emit::{Emit, Path};
+pub(crate) use emit::{Harvest, Queue};
 
 /// Light transport, nothing else.
 pub trait Integrator: Send + Sync {
-    /// A ray met a surface, or left the world (`None`): what that adds, which lights to ask, where the
-    /// light came from.
-    fn vertex(&self, world: &World, path: &Path, vertex: Option<&Vertex>, emit: &mut Emit);
+    /// `ray`, its end drawn in, met a surface: what that adds, which lights to ask, where the light came from.
+    fn vertex(&self, world: &World, ray: &Ray, path: &Path, vertex: &Vertex, emit: &mut Emit);
+    /// `ray` left the world: what it adds.
+    fn escape(&self, _world: &World, _ray: &Ray, _emit: &mut Emit) {}
 }
 
 closed_set! {

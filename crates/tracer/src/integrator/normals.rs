@@ -6,7 +6,7 @@
 
 use super::{Emit, Integrator, Path};
 use crate::world::{Vertex, World};
-use juggler_math::Rgb;
+use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,11 +16,9 @@ use serde::{Deserialize, Serialize};
 pub struct Normals {}
 
 impl Integrator for Normals {
-    fn vertex(&self, _world: &World, _path: &Path, vertex: Option<&Vertex>, emit: &mut Emit) {
-        if let Some(vertex) = vertex {
-            let n = vertex.surface.shading_normal * 0.5 + 0.5;
-            emit.add(Rgb::new(n.x, n.y, n.z));
-        }
+    fn vertex(&self, _world: &World, _ray: &Ray, _path: &Path, vertex: &Vertex, emit: &mut Emit) {
+        let n = vertex.surface.shading_normal * 0.5 + 0.5;
+        emit.add(Rgb::new(n.x, n.y, n.z));
     }
 }
 

@@ -86,7 +86,7 @@ pub(super) fn reach(
     if !(distance > 0.0 && distance.is_finite() && factor > 0.0 && factor.is_finite()) {
         return None;
     }
-    let towards_centre = to_centre / distance;
+    let towards_centre = to_centre * (1.0 / distance);
     let Some(extent) = extent else {
         return Some(Arrival { towards_centre, wi: towards_centre, distance, factor });
     };
@@ -97,7 +97,7 @@ pub(super) fn reach(
     };
     let to = to_centre + offset;
     let distance = to.length();
-    (distance > 0.0).then(|| Arrival { towards_centre, wi: to / distance, distance, factor })
+    (distance > 0.0).then(|| Arrival { towards_centre, wi: to * (1.0 / distance), distance, factor })
 }
 
 /// Checks the fields that both lights share.

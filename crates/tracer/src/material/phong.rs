@@ -22,6 +22,7 @@ use crate::texture::{Input, Lookup, Slot, TextureTable};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// The classic material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -246,12 +247,11 @@ impl CompiledPhong {
 
     /// The numbers at a point.
     #[inline]
-    pub fn eval(&self, textures: &TextureTable, at: impl FnOnce() -> Lookup) -> PhongLobe {
+    pub fn eval(&self, textures: &TextureTable, at: impl FnOnce() -> Lookup) -> Cow<'_, PhongLobe> {
+        let Some(slots) = &self.textured else { return Cow::Borrowed(&self.fixed) };
         let mut lobe = self.fixed;
-        if let Some(slots) = &self.textured {
-            slots.fill(&mut lobe, textures, &at());
-        }
-        lobe
+        slots.fill(&mut lobe, textures, &at());
+        Cow::Owned(lobe)
     }
 
     /// What a shadow ray keeps at a point.

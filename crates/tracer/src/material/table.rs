@@ -5,6 +5,7 @@ use crate::bsdf::Phong as PhongLobe;
 use crate::surface::Surface;
 use crate::texture::TextureTable;
 use juggler_math::Rgb;
+use std::borrow::Cow;
 
 /// All materials of a world by number, with the textures they use. Made by a
 /// [`MaterialCompiler`](super::MaterialCompiler).
@@ -39,10 +40,10 @@ impl MaterialTable {
     /// The numbers of material `id` at a point of a surface (world space, normals as the shape gives them);
     /// black for a number that is no material.
     #[inline]
-    pub fn phong(&self, id: MaterialId, surface: &Surface) -> PhongLobe {
+    pub fn phong(&self, id: MaterialId, surface: &Surface) -> Cow<'_, PhongLobe> {
         match self.leaf(id, surface) {
             Some(phong) => phong.eval(&self.textures, || lookup(surface)),
-            None => PhongLobe::BLACK,
+            None => Cow::Borrowed(&PhongLobe::BLACK),
         }
     }
 

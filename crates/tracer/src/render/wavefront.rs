@@ -7,8 +7,9 @@
 //! own tree of rays alone. The same cuts bound the memory.
 
 use super::{Control, Job, Rays, Tile, Work};
+use crate::camera::LANES;
 use crate::film::PixelSum;
-use crate::integrator::{Emit, Flight, Harvest, Path, Queue};
+use crate::integrator::{Emit, Harvest, Path, Queue};
 use crate::sampler::Sampler;
 use crate::world::WorldHit;
 use juggler_bvh::PACKET;
@@ -68,7 +69,7 @@ impl<'j> Engine<'j> {
 
     /// Traces the samples `slots` to their ends.
     fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>) {
-        self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lights().len());
+        self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
         let mut camera = self.spare.pop().unwrap_or_default();
         self.expose(work, samples, slots, &mut camera);
         self.stack.push(camera);
@@ -97,23 +98,36 @@ impl<'j> Engine<'j> {
 
     /// The camera's rays of samples of one pixel, from sample `first` on.
     fn expose_pixel(&self, center: Vec2, stream: &Sampler, first: u32, slots: Range<u32>, queue: &mut Queue) {
-        let mut places = [Vec2::splat(0.5); PASS as usize];
-        let places = &mut places[..slots.len()];
-        if self.job.samples > 1 {
-            stream.first_points(first, places);
-        }
-        let Job { camera, filter, .. } = self.job;
+        let Job { camera, filter, samples, .. } = self.job;
         let needs_lens = camera.needs_lens();
-        for (i, (slot, place)) in slots.zip(places).enumerate() {
-            let sample = filter.sample(*place);
-            let (film, weight) =
-                if self.job.samples == 1 { (center, 1.0) } else { (center + sample.offset, sample.weight) };
-            let mut sampler = stream.sample(first + i as u32);
-            sampler.skip(1);
-            let lens = if needs_lens { sampler.next_2d() } else { Vec2::splat(0.5) };
-            if let Some(ray) = camera.ray(film, lens, 0.0) {
-                queue.push(ray, Flight { weight: Rgb::splat(weight), slot, depth: 0, sampler });
+        for start in slots.clone().step_by(LANES) {
+            let index = first + (start - slots.start);
+            let (mut films, mut weights) = ([[center.x; LANES], [center.y; LANES]], [1.0; LANES]);
+            if *samples > 1 {
+                let mut places = [Vec2::ZERO; LANES];
+                stream.first_points(index, &mut places);
+                for i in 0..LANES {
+                    let sample = filter.sample(places[i]);
+                    films[0][i] = center.x + sample.offset.x;
+                    films[1][i] = center.y + sample.offset.y;
+                    weights[i] = sample.weight;
+                }
             }
+            let mut samplers: [Sampler; LANES] = std::array::from_fn(|i| stream.sample(index + i as u32));
+            samplers.iter_mut().for_each(|sampler| sampler.skip(1));
+            let mut lenses = [Vec2::splat(0.5); LANES];
+            if needs_lens {
+                lenses = std::array::from_fn(|i| samplers[i].next_2d());
+            }
+            let count = LANES.min((slots.end - start) as usize);
+            camera.rays(&films, &lenses, count, &mut queue.rays);
+            let path = |i: usize| Path {
+                weight: Rgb::splat(weights[i]),
+                depth: 0,
+                sampler: samplers[i],
+                slot: start + i as u32,
+            };
+            queue.paths.extend((0..count).map(path));
         }
     }
 
@@ -130,7 +144,7 @@ impl<'j> Engine<'j> {
 
     fn nearest(&mut self, queue: &mut Queue) {
         self.hits.resize(queue.len(), WorldHit::NONE);
-        let from_camera = queue.flights.first().is_some_and(|flight| flight.depth == 0);
+        let from_camera = queue.paths.first().is_some_and(|path| path.depth == 0);
         if from_camera {
             for (rays, hits) in queue.rays.chunks_mut(PACKET).zip(self.hits.chunks_mut(PACKET)) {
                 self.job.world.closest_packet(rays, hits);
@@ -144,19 +158,17 @@ impl<'j> Engine<'j> {
     /// Hands each vertex to the integrator; stops between slots when too many rays wait. Returns how many
     /// rays were done.
     fn shade(&mut self, queue: &Queue) -> usize {
-        let world = self.job.world;
-        for i in 0..queue.len() {
-            let flight = &queue.flights[i];
-            let path = Path { ray: queue.rays[i], weight: flight.weight, depth: flight.depth, sampler: flight.sampler };
-            let mut emit = Emit::new(&mut self.harvest, &path, flight.slot);
-            if self.hits[i].is_some() {
-                let vertex = world.vertex(&path.ray, &self.hits[i]);
-                self.job.integrator.vertex(world, &path, Some(&vertex), &mut emit);
+        let Job { world, integrator, .. } = self.job;
+        for (i, ((ray, path), hit)) in queue.rays.iter().zip(&queue.paths).zip(&self.hits).enumerate() {
+            let mut emit = Emit::new(&mut self.harvest, path);
+            if hit.is_some() {
+                let vertex = world.vertex(ray, hit);
+                integrator.vertex(world, ray, path, &vertex, &mut emit);
             } else {
-                self.job.integrator.vertex(world, &path, None, &mut emit);
+                integrator.escape(world, ray, &mut emit);
             }
-            let last_of_slot = queue.flights.get(i + 1).is_none_or(|next| next.slot != flight.slot);
-            if last_of_slot && self.harvest.next.len() + self.harvest.pending() > WAITING {
+            let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);
+            if last_of_slot && self.harvest.next.len() + self.harvest.pending > WAITING {
                 return i + 1;
             }
         }
@@ -165,7 +177,8 @@ impl<'j> Engine<'j> {
 
     /// Answers the shadow rays, light by light, and adds what comes through.
     fn shadows(&mut self) {
-        let Harvest { radiance, shadows, .. } = &mut self.harvest;
+        let Harvest { radiance, shadows, pending, .. } = &mut self.harvest;
+        *pending = 0;
         let last = shadows.len().saturating_sub(1);
         for (number, queue) in shadows.iter_mut().enumerate() {
             self.rays.shadow += queue.rays.len() as u64;
@@ -177,12 +190,11 @@ impl<'j> Engine<'j> {
             } else {
                 self.job.world.transmittance_batch(&queue.rays, &mut self.through);
             }
-            for ((slot, arriving), through) in queue.slots.iter().zip(&queue.radiance).zip(&self.through) {
+            for ((slot, arriving), through) in queue.gains.iter().zip(&self.through) {
                 radiance[*slot as usize] += *arriving * *through;
             }
             queue.rays.clear();
-            queue.radiance.clear();
-            queue.slots.clear();
+            queue.gains.clear();
         }
     }
 
@@ -193,7 +205,7 @@ impl<'j> Engine<'j> {
             for i in done..queue.len() {
                 // The hits are found again: a ray keeps no memory of having been traced.
                 let ray = juggler_math::Ray { t_max: f32::INFINITY, ..queue.rays[i] };
-                rest.push(ray, queue.flights[i]);
+                rest.push(ray, queue.paths[i]);
             }
             self.stack.push(rest);
         }
@@ -208,7 +220,7 @@ impl<'j> Engine<'j> {
         for range in cut(&next).into_iter().rev() {
             let mut queue = self.spare.pop().unwrap_or_default();
             queue.rays.extend_from_slice(&next.rays[range.clone()]);
-            queue.flights.extend_from_slice(&next.flights[range]);
+            queue.paths.extend_from_slice(&next.paths[range]);
             self.stack.push(queue);
         }
         let mut next = next;
@@ -218,11 +230,17 @@ impl<'j> Engine<'j> {
 
     /// Adds the finished samples to their pixels.
     fn develop(&mut self, work: &Work, samples: u64, slots: Range<u64>, sums: &mut [PixelSum]) {
-        for (at, radiance) in slots.zip(&self.harvest.radiance) {
+        let (mut pixel, mut sample) = ((slots.start / samples) as usize, (slots.start % samples) as u32);
+        let count = samples as u32;
+        for radiance in &self.harvest.radiance {
             let finite = radiance.is_finite();
             self.rays.not_finite += u64::from(!finite);
             let radiance = if finite { *radiance } else { Rgb::BLACK };
-            sums[(at / samples) as usize].add(work.samples.start + (at % samples) as u32, radiance);
+            sums[pixel].add(work.samples.start + sample, radiance);
+            sample += 1;
+            if sample == count {
+                (pixel, sample) = (pixel + 1, 0);
+            }
         }
     }
 }
@@ -232,7 +250,7 @@ impl<'j> Engine<'j> {
 fn cut(queue: &Queue) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     let (mut start, mut at) = (0, 0);
-    for group in queue.flights.chunk_by(|a, b| a.slot == b.slot) {
+    for group in queue.paths.chunk_by(|a, b| a.slot == b.slot) {
         let end = at + group.len();
         if group.len() > GROUP {
             ranges.push(start..at);

@@ -21,6 +21,7 @@ impl Spread for Independent {
 }
 
 /// Point `index` of the stream `seed`.
+#[inline]
 pub fn point(index: u32, seed: u32) -> Vec2 {
     let x = hash::mix(seed.wrapping_add(index.wrapping_mul(0x9e37_79b9)));
     Vec2::new(hash::unit_f32(x), hash::unit_f32(hash::mix(x ^ 0x68bc_21eb)))

@@ -34,28 +34,33 @@ pub fn point(index: u32, in_order: bool, seed: u32, side: u32) -> Vec2 {
     // Most indices lie in the first set, and divisions are slow.
     let (set, cell) = if index < cells { (0, index) } else { (index / cells, index % cells) };
     let cell = if in_order { cell } else { permutation(cell, cells, hash::combine(seed, set)) };
-    in_cell(cell % side, cell / side, index, seed, 1.0 / side as f32)
+    in_cell(Vec2::new((cell % side) as f32, (cell / side) as f32), index, seed, 1.0 / side as f32)
 }
 
-/// The points from `first` on in the order of their cells: [`point`] without its divisions.
+/// The points from `first` on in the order of their cells: [`point`] without its divisions, and in steps
+/// that go side by side.
+#[inline]
 pub fn points_in_order(first: u32, seed: u32, side: u32, points: &mut [Vec2]) {
     let cell = first % (side * side);
     let (mut column, mut row) = (cell % side, cell / side);
-    let edge = 1.0 / side as f32;
-    for (i, place) in points.iter_mut().enumerate() {
-        *place = in_cell(column, row, first.wrapping_add(i as u32), seed, edge);
+    for place in &mut *points {
+        *place = Vec2::new(column as f32, row as f32);
         column += 1;
         if column == side {
             column = 0;
             row = if row + 1 == side { 0 } else { row + 1 };
         }
     }
+    let edge = 1.0 / side as f32;
+    for (i, place) in points.iter_mut().enumerate() {
+        *place = in_cell(*place, first.wrapping_add(i as u32), seed, edge);
+    }
 }
 
 #[inline]
-fn in_cell(column: u32, row: u32, index: u32, seed: u32, edge: f32) -> Vec2 {
+fn in_cell(cell: Vec2, index: u32, seed: u32, edge: f32) -> Vec2 {
     let jitter = super::independent::point(index, seed);
-    ((Vec2::new(column as f32, row as f32) + jitter) * edge).min(Vec2::splat(1.0 - f32::EPSILON / 2.0))
+    ((cell + jitter) * edge).min(Vec2::splat(1.0 - f32::EPSILON / 2.0))
 }
 
 /// Place `i` of a random permutation of `0..length` (Kensler, Correlated Multi-Jittered Sampling, 2013):

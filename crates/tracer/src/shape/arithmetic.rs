@@ -16,8 +16,15 @@ pub fn double(ray: &Ray) -> (DVec3, DVec3) {
 /// for `b² - a c` and is not negative. Nothing cancels (Press et al., Numerical Recipes, section 5.6).
 #[inline]
 pub fn roots(a: f64, b: f64, c: f64, discriminant: f64) -> (f64, f64) {
+    let [near, far] = root_fractions(a, b, c, discriminant);
+    (near.0 / near.1, far.0 / far.1)
+}
+
+/// The [`roots`] before they are divided, numerator and denominator: often one of them is enough.
+#[inline]
+pub fn root_fractions(a: f64, b: f64, c: f64, discriminant: f64) -> [(f64, f64); 2] {
     let q = b + discriminant.sqrt().copysign(b);
-    if q < 0.0 { (q / a, c / q) } else { (c / q, q / a) }
+    if q < 0.0 { [(q, a), (c, q)] } else { [(c, q), (q, a)] }
 }
 
 /// Where a ray crosses the endless cylinder around the y axis.
@@ -49,7 +56,7 @@ pub fn within_floats(ray: &Ray) -> Ray {
 }
 
 /// A hit at `t` if the ray's range holds it once rounded; never at infinity.
-#[inline]
+#[inline(always)]
 pub fn in_range(ray: &Ray, t: f64, part: u32) -> Option<Hit> {
     let t = t as f32;
     (t >= ray.t_min && t <= ray.t_max && t < f32::INFINITY).then_some(Hit { t, uv: Vec2::ZERO, part })

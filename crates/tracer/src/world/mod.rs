@@ -8,6 +8,7 @@ use crate::shape::{AnyShape, Hit};
 use crate::surface::Surface;
 use juggler_bvh::{Bvh, Quality};
 use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2};
+use std::borrow::Cow;
 
 mod items;
 mod trace;
@@ -57,6 +58,17 @@ pub struct Vertex {
     pub object: u32,
 }
 
+/// A light that shines from somewhere, with what is asked at every vertex.
+#[derive(Clone, Debug)]
+pub struct Lamp {
+    /// The light.
+    pub light: AnyLight,
+    /// [`Light::shadow_samples`](crate::light::Light::shadow_samples), at least 1.
+    pub samples: u32,
+    /// [`Light::is_point`](crate::light::Light::is_point).
+    pub is_point: bool,
+}
+
 /// Counts for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Geometry {
@@ -81,10 +93,17 @@ pub struct World {
     unbounded: Vec<u32>,
     bounds: Aabb,
     materials: MaterialTable,
-    lights: Vec<AnyLight>,
+    lamps: Vec<Lamp>,
     ambient: Rgb,
     background: AnyBackground,
     has_transparency: bool,
+}
+
+impl Lamp {
+    fn new(light: AnyLight) -> Self {
+        let (samples, is_point) = (light.shadow_samples().max(1), light.is_point());
+        Self { light, samples, is_point }
+    }
 }
 
 impl World {
@@ -106,13 +125,13 @@ impl World {
         let items = order.map(|object| Item::new(&objects[object as usize], object)).collect();
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
         let bounds = bounded_boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(*one));
-        let lights = lights.into_iter().filter(|light| light.ambient().is_black()).collect();
-        Self { objects, items, bvh, unbounded, bounds, materials, lights, ambient, background, has_transparency }
+        let lamps = lights.into_iter().filter(|light| light.ambient().is_black()).map(Lamp::new).collect();
+        Self { objects, items, bvh, unbounded, bounds, materials, lamps, ambient, background, has_transparency }
     }
 
     /// The lights that shine from somewhere.
-    pub fn lights(&self) -> &[AnyLight] {
-        &self.lights
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
     }
 
     /// Light that is everywhere.
@@ -131,11 +150,13 @@ impl World {
     }
 
     /// The numbers of the material at a vertex.
-    pub fn phong(&self, vertex: &Vertex) -> Phong {
+    #[inline]
+    pub fn phong(&self, vertex: &Vertex) -> Cow<'_, Phong> {
         self.materials.phong(vertex.material, &vertex.surface)
     }
 
     /// The surface where `ray` made `hit`.
+    #[inline]
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
         let placed = &self.objects[hit.object as usize];
         Vertex { surface: placed.surface(ray, &hit.hit), material: placed.object.material, object: hit.object }
@@ -146,7 +167,7 @@ impl World {
         Geometry {
             shapes: self.objects.len(),
             triangles: self.objects.iter().map(|o| o.object.shape.triangles()).sum(),
-            lights: self.lights.len(),
+            lights: self.lamps.len(),
             geometry_bytes: size_of::<Placed>() * self.objects.len()
                 + size_of::<Item>() * self.items.len()
                 + self.objects.iter().map(|o| o.object.shape.heap_bytes()).sum::<usize>(),

@@ -1,7 +1,7 @@
 //! The questions that rays ask: what is nearest, is anything in the way, how much light gets through.
 
 use super::{World, WorldHit};
-use juggler_bvh::Leaf;
+use juggler_bvh::{Leaf, PACKET};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
 
@@ -42,7 +42,7 @@ fn keep(best: &mut WorldHit, hit: WorldHit, ray: &mut Ray) {
 }
 
 impl World {
-    /// The nearest hits of at most [`juggler_bvh::PACKET`] rays that go much the same way.
+    /// The nearest hits of at most [`PACKET`] rays that go much the same way.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
         self.closest_unbounded(rays, hits);
         self.bvh.closest_packet(rays, &mut Nearest { world: self, hits });
@@ -73,25 +73,30 @@ impl World {
         hits[0]
     }
 
-    /// How much of a light's radiance comes through along each of at most [`juggler_bvh::PACKET`] rays that
+    /// How much of a light's radiance comes through along each of at most [`PACKET`] rays that
     /// go much the same way.
     pub fn transmittance_packet(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, |rays, occluded, leaf| self.bvh.any_packet(rays, occluded, leaf));
+        self.transmittance::<PACKET>(rays, through, |rays, occluded, leaf| self.bvh.any_packet(rays, occluded, leaf));
     }
 
     /// How much of a light's radiance comes through along each of any number of rays.
     pub fn transmittance_batch(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, |rays, occluded, leaf| self.bvh.any_batch(rays, occluded, leaf));
+        self.transmittance::<64>(rays, through, |rays, occluded, leaf| self.bvh.any_batch(rays, occluded, leaf));
     }
 
-    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], any: impl Fn(&[Ray], &mut [bool], &mut Nearest)) {
+    /// Asks for `CHUNK` rays at a time.
+    fn transmittance<const CHUNK: usize>(
+        &self,
+        rays: &[Ray],
+        through: &mut [Rgb],
+        any: impl Fn(&[Ray], &mut [bool], &mut Nearest),
+    ) {
         if self.has_transparency {
             for (ray, through) in rays.iter().zip(through) {
                 *through = self.filtered(*ray);
             }
             return;
         }
-        const CHUNK: usize = 64;
         for (rays, through) in rays.chunks(CHUNK).zip(through.chunks_mut(CHUNK)) {
             let mut occluded = [false; CHUNK];
             let occluded = &mut occluded[..rays.len()];
