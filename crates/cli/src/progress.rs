@@ -86,6 +86,7 @@ impl Look {
 
     fn words(&self) -> String {
         let eta = self.eta.map(|eta| Duration::from_secs(eta.as_secs_f64().round() as u64));
+        let eta = eta.filter(|eta| !eta.is_zero());
         let eta = eta.map(|eta| format!(", {} left", duration(eta).replace(", 0 milliseconds", "")));
         let percent = self.fraction * 100.0;
         format!("{percent:5.1} %, {} rays/s{}", amount(self.rays_per_second), eta.unwrap_or_default())
@@ -184,6 +185,8 @@ mod tests {
     fn looks_in_words() {
         let look = Look { fraction: 0.255, rays: 7, rays_per_second: 1.5e6, eta: Some(Duration::from_millis(61_400)) };
         assert_eq!(look.words(), " 25.5 %, 1.50 million rays/s, 1 minute, 1 second left");
+        let last = Look { fraction: 0.999, eta: Some(Duration::from_millis(4)), ..look };
+        assert_eq!(last.words(), " 99.9 %, 1.50 million rays/s");
         let unknown = Look { fraction: 0.0, rays: 0, rays_per_second: 0.0, eta: None };
         assert_eq!(unknown.words(), "  0.0 %, 0 rays/s");
     }

@@ -8,7 +8,7 @@
 //! - [`codec`]: one file per format, writer and reader;
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
 //! - [`input`]: from a file to an image;
-//! - [`compare`]: how much two images differ.
+//! - [`mod@compare`]: how much two images differ.
 
 pub mod atomic;
 pub mod codec;

@@ -27,7 +27,7 @@ Examples:
   juggler render scene.json -o - | display                   the picture to another program
   juggler info scene.png                                     how that picture was made
 
-Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed, 130 interrupted.";
+Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed, 130 or 143 interrupted.";
 
 /// Renders what was asked for.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
