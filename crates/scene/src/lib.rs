@@ -29,4 +29,4 @@ pub use description::{Chain, ControlSphere, Description, Limb, Object, Transform
 pub use presets::{BuiltIn, built_in_scenes};
 pub use report::{Problem, Problems, Severity};
 pub use scene::{Scene, SceneError};
-pub use schema::schema_json;
+pub use schema::{reference, schema_json};

@@ -1,6 +1,6 @@
 //! Ten thousand broken scenes: whatever the file, the program answers with a message.
 
-use juggler_scene::{Scene, built_in_scenes};
+use juggler_scene::{BuiltIn, Scene, built_in_scenes};
 
 /// Scenes that together use much of the format; the built-in ones are added.
 const SEEDS: [&str; 4] = [
@@ -131,11 +131,17 @@ fn outcome(text: String) -> Result<(), String> {
     Ok(())
 }
 
+/// Whether a scene can be built thousands of times in a test.
+fn is_small(scene: &BuiltIn) -> bool {
+    let objects = || Some(Scene::built_in(scene.name).ok()?.compile().ok()?.world.geometry().shapes);
+    scene.name == "juggler" || scene.json.len() < 4000 && objects().is_some_and(|objects| objects < 50)
+}
+
 #[test]
 fn no_broken_scene_breaks_the_program() {
-    let built_in = built_in_scenes().iter().map(|scene| scene.json).filter(|json| json.len() < 20_000);
+    let built_in = built_in_scenes().iter().filter(|scene| is_small(scene)).map(|scene| scene.json);
     let seeds: Vec<Vec<String>> = SEEDS.into_iter().chain(built_in).map(tokens).collect();
-    assert!(seeds.len() > SEEDS.len());
+    assert!(seeds.len() > SEEDS.len() + 10);
     let mut numbers = Numbers(2026);
     let (mut rendered, mut refused) = (0, 0);
     for round in 0..10_000 {

@@ -18,7 +18,7 @@ pub fn check(scene: &Description) -> Result<(), Vec<Finding>> {
     if total > MAX_OBJECTS && counter.findings.is_empty() {
         let message = format!("the scene places {total} objects, the limit is {MAX_OBJECTS}");
         let help = "groups within groups multiply; large meshes belong into mesh files";
-        counter.findings.push(Finding::error(message).at(&Path::root().key("objects")).help(help));
+        counter.findings.push(Finding::error(message).at(Path::root().key("objects")).help(help));
     }
     if counter.findings.is_empty() { Ok(()) } else { Err(counter.findings) }
 }

@@ -21,7 +21,7 @@ impl Materials {
         for (name, texture) in &scene.textures {
             if let Err(invalid) = texture.check() {
                 let path = Path::root().key("textures").key(name.as_str()).key(crate::kind::name_of(texture));
-                findings.push(Finding::error(invalid.message).at(&path.join(&invalid.field)));
+                findings.push(Finding::error(invalid.message).at(path.join(&invalid.field)));
             }
         }
         let textures = scene.textures.iter().map(|(name, texture)| (name.clone(), texture.clone()));
@@ -71,7 +71,7 @@ impl Materials {
 }
 
 fn finding(error: &MaterialError, path: &Path) -> Finding {
-    Finding::error(error.to_string()).at(&path.join(&error.path()))
+    Finding::error(error.to_string()).at(path.join(&error.path()))
 }
 
 fn glows(material: &AnyMaterial) -> bool {

@@ -19,6 +19,7 @@ mod settings;
 
 pub use count::MAX_OBJECTS;
 pub use meshes::{Files, Library};
+pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
 
 /// A scene ready to be rendered.
 pub struct Compiled {
@@ -94,7 +95,7 @@ fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> V
         cameras.push(("camera".into(), camera.clone()));
         if !scene.cameras.is_empty() {
             let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
-            findings.push(problem.at(&Path::root().key("camera")).help("move it into `cameras` under a name"));
+            findings.push(problem.at(Path::root().key("camera")).help("move it into `cameras` under a name"));
         }
     }
     for (name, camera) in &scene.cameras {
@@ -109,7 +110,7 @@ fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> V
             Some(at) => cameras[..=at].rotate_right(1),
             None => {
                 let problem = Finding::error(format!("no camera is called `{}`", chosen.0));
-                findings.push(problem.at(&Path::root().key("render").key("camera")));
+                findings.push(problem.at(Path::root().key("render").key("camera")));
             }
         }
     }

@@ -17,15 +17,15 @@ pub fn check(render: &Render, findings: &mut Vec<Finding>) {
     let [width, height] = render.size;
     if !(1..=MAX_EDGE).contains(&width) || !(1..=MAX_EDGE).contains(&height) {
         let message = format!("each number of `size` must be between 1 and {MAX_EDGE}, is {width} x {height}");
-        findings.push(Finding::error(message).at(&path.key("size")));
+        findings.push(Finding::error(message).at(path.key("size")));
     } else if u64::from(width) * u64::from(height) > MAX_PIXELS {
         let pixels = u64::from(width) * u64::from(height);
         let message = format!("`size` asks for {pixels} pixels, the limit is {MAX_PIXELS}");
-        findings.push(Finding::error(message).at(&path.key("size")));
+        findings.push(Finding::error(message).at(path.key("size")));
     }
     if !(1..=MAX_SAMPLES).contains(&render.samples) {
         let message = format!("`samples` must be between 1 and {MAX_SAMPLES}, is {}", render.samples);
-        findings.push(Finding::error(message).at(&path.key("samples")));
+        findings.push(Finding::error(message).at(path.key("samples")));
     }
 }
 

@@ -20,7 +20,7 @@ pub enum TransformStep {
     Rotate(Rotate),
     /// Scales about the origin.
     Scale(Axes),
-    /// Any affine map: 12 or 16 numbers, row by row, points as columns; the last row of 16 is 0 0 0 1.
+    /// Any affine map: 3 or 4 rows of 4 numbers, that multiply points written as columns; a fourth row is 0 0 0 1.
     Matrix(#[schemars(length(min = 12, max = 16))] Vec<f32>),
 }
 

@@ -19,7 +19,7 @@ const MAPS: [&str; 5] = ["variables", "cameras", "textures", "materials", "group
 /// Things in order: those of included files come first.
 const LISTS: [&str; 2] = ["lights", "objects"];
 /// Most files of one scene.
-const MAX_FILES: usize = 1000;
+pub const MAX_FILES: usize = 1000;
 /// Longest chain of files that include each other.
 const MAX_CHAIN: usize = 32;
 

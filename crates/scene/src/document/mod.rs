@@ -7,6 +7,7 @@ mod source;
 mod tree;
 
 pub use guard::{MAX_BYTES, MAX_DEPTH, MAX_VALUES};
+pub use include::MAX_FILES;
 pub use source::{FileId, Place, Source, Sources};
 pub use tree::{Member, Members, Node, Value};
 

@@ -10,9 +10,11 @@ use std::sync::LazyLock;
 
 mod numbers;
 mod publish;
+mod reference;
 
 pub use numbers::{drop_nulls, tidy};
 pub use publish::{published, schema_json};
+pub use reference::reference;
 
 /// The format's schema: every object closed.
 #[derive(Debug)]

@@ -17,6 +17,7 @@ mod structure;
 mod words;
 
 pub use names::Family;
+pub(crate) use words::{noun as family_noun, plural};
 
 /// Most mistakes that are collected; a file of numbers where objects should be makes one for each.
 const MAX_FINDINGS: usize = 200;

@@ -95,6 +95,11 @@ pub fn noun(name: &str) -> String {
     words
 }
 
+/// Several of them.
+pub fn plural(noun: &str) -> String {
+    format!("{noun}s")
+}
+
 /// "a" or "an".
 pub fn article(noun: &str) -> &'static str {
     if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }

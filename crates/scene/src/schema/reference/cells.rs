@@ -1,0 +1,161 @@
+//! The cells of the tables: what may stand at a field, and what stands there when nothing is said.
+
+use crate::schema::{Schema, variants};
+use crate::validate::{family_noun, plural};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Longest default that is written out.
+const MAX_DEFAULT: usize = 60;
+
+/// Writes cells.
+pub struct Cells<'s> {
+    /// The format.
+    pub schema: &'s Schema,
+    /// Where definitions are explained.
+    pub anchors: BTreeMap<String, String>,
+}
+
+impl Cells<'_> {
+    /// What may stand at a field, with its range and unit.
+    pub fn value(&self, field: &str, schema: &Value) -> String {
+        let value = self.words(schema, false);
+        match unit(field) {
+            Some(unit) => format!("{value}, {unit}"),
+            None => value,
+        }
+    }
+
+    /// A value in words, or `many` of them.
+    fn words(&self, schema: &Value, many: bool) -> String {
+        let (name, target) = self.schema.follow(schema);
+        if let Some(text) = name.and_then(|name| self.named(name, many)) {
+            return text;
+        }
+        if let Some(branches) = target.get("anyOf").and_then(Value::as_array) {
+            return self.alternatives(branches, many);
+        }
+        let types: Vec<&str> = match target.get("type") {
+            Some(Value::Array(several)) => several.iter().filter_map(Value::as_str).collect(),
+            one => one.and_then(Value::as_str).into_iter().collect(),
+        };
+        let s = if many { "s" } else { "" };
+        match types.iter().find(|t| **t != "null").copied() {
+            Some("number") => format!("number{s}{}", range(target)),
+            Some("integer") => format!("whole number{s}{}", range(target)),
+            Some("boolean") => "`true` or `false`".into(),
+            Some("array") => self.array(target, many),
+            Some("object") => match target.get("additionalProperties").filter(|others| others.is_object()) {
+                Some(others) => format!("object{s} of named {}", self.words(others, true)),
+                None => format!("object{s}"),
+            },
+            _ => format!("string{s}"),
+        }
+    }
+
+    /// Definitions that have an entry of their own, or are best said in words.
+    fn named(&self, name: &str, many: bool) -> Option<String> {
+        let noun = |noun: &str| if many { plural(noun) } else { noun.to_owned() };
+        Some(match name {
+            "Color" => format!("[{}](#colours)", noun("colour")),
+            "GroupName" => "name of a group".into(),
+            "CameraName" => "name of a camera".into(),
+            "Variable" => format!("{} or [expressions](#expressions)", noun("number")),
+            name => format!("[{}](#{})", noun(&family_noun(name)), self.anchors.get(name)?),
+        })
+    }
+
+    /// A material or its name; a number or the name of a texture.
+    fn alternatives(&self, branches: &[Value], many: bool) -> String {
+        let is = |branch: &Value, t: &str| branch.get("type").is_some_and(|found| found == t);
+        let material = branches.iter().any(|branch| self.schema.follow(branch).0 == Some("AnyMaterial"));
+        let (texts, others): (Vec<&Value>, Vec<&Value>) =
+            branches.iter().filter(|branch| !is(branch, "null")).partition(|branch| is(branch, "string"));
+        let mut words: Vec<String> = others.into_iter().map(|branch| self.words(branch, many)).collect();
+        if !texts.is_empty() {
+            words.push(if material { "its name".into() } else { "the name of a [texture](#textures)".into() });
+        }
+        words.join(" or ")
+    }
+
+    fn array(&self, schema: &Value, many: bool) -> String {
+        let array = if many { "arrays" } else { "array" };
+        let items = schema.get("items").map_or_else(|| "values".into(), |items| self.words(items, true));
+        let bound = |key: &str| schema.get(key).and_then(Value::as_u64);
+        match (bound("minItems"), bound("maxItems")) {
+            (Some(least), Some(most)) if least == most => format!("{array} of {least} {items}"),
+            (Some(least), Some(most)) => format!("{array} of {least} to {most} {items}"),
+            (Some(least), None) => format!("{array} of {least} or more {items}"),
+            _ => format!("{array} of {items}"),
+        }
+    }
+
+    /// The default of a field.
+    pub fn default(&self, field: &Value) -> String {
+        let Some(default) = field.get("default").filter(|default| !default.is_null()) else { return String::new() };
+        let text = self.short(field, default).to_string();
+        if text.len() > MAX_DEFAULT { String::new() } else { format!("`{}`", spaced(&text)) }
+    }
+
+    /// The shortest way to write a default: a kind by its name, an object without what is its own default.
+    fn short(&self, schema: &Value, value: &Value) -> Value {
+        let target = self.schema.follow(schema).1;
+        if let Some(branches) = target.get("anyOf").and_then(Value::as_array) {
+            let inline = branches.iter().find(|branch| value.is_object() && self.schema.follow(branch).0.is_some());
+            return inline.map_or_else(|| value.clone(), |branch| self.short(branch, value));
+        }
+        let Value::Object(members) = value else { return value.clone() };
+        if let Some((kind, inner)) = members.iter().next().filter(|_| variants(target).next().is_some()) {
+            let content = self.schema.kinds(target).find(|(name, _)| name == kind).map(|(_, content)| content);
+            let inner = content.map_or_else(|| inner.clone(), |content| self.short(content, inner));
+            let bare = inner.as_object().is_some_and(serde_json::Map::is_empty);
+            return if bare {
+                kind.as_str().into()
+            } else {
+                Value::Object([(kind.clone(), inner)].into_iter().collect())
+            };
+        }
+        let fields = target.get("properties").and_then(Value::as_object);
+        let own = |key: &str| fields.and_then(|fields| fields.get(key)?.get("default"));
+        let said = members.iter().filter(|(key, value)| !value.is_null() && own(key) != Some(*value));
+        Value::Object(said.map(|(key, value)| (key.clone(), value.clone())).collect())
+    }
+}
+
+/// The unit that a field's name tells.
+fn unit(field: &str) -> Option<&'static str> {
+    if field == "degrees" || field.ends_with("_degrees") {
+        Some("degrees")
+    } else if field.ends_with("_stops") {
+        Some("stops")
+    } else {
+        None
+    }
+}
+
+/// The numbers that are allowed, as far as there are limits.
+fn range(schema: &Value) -> String {
+    let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
+    match (bound("minimum"), bound("maximum")) {
+        (Some(least), Some(most)) if least == most => return format!(": {least}"),
+        (Some(least), Some(most)) => return format!(" from {least} to {most}"),
+        _ => {}
+    }
+    let signs = [("exclusiveMinimum", ">"), ("minimum", "≥"), ("exclusiveMaximum", "<"), ("maximum", "≤")];
+    let limits = signs.iter().filter_map(|(key, sign)| Some(format!("{sign} {}", bound(key)?)));
+    let limits = limits.collect::<Vec<_>>().join(" and ");
+    if limits.is_empty() { limits } else { format!(" {limits}") }
+}
+
+/// Compact JSON with a blank after commas and colons.
+fn spaced(json: &str) -> String {
+    let (mut text, mut in_string) = (String::new(), false);
+    for character in json.chars() {
+        text.push(character);
+        in_string ^= character == '"';
+        if !in_string && ",:".contains(character) {
+            text.push(' ');
+        }
+    }
+    text
+}
