@@ -1,7 +1,5 @@
 //! The scenes that are part of the program.
 
-#![expect(clippy::unwrap_used, reason = "a test")]
-
 use juggler_scene::{BuiltIn, Scene, SceneError, built_in_scenes};
 use std::collections::BTreeSet;
 use std::fs;

@@ -20,8 +20,7 @@ fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     assert!(findings.is_empty(), "{findings:?}");
     let ground = assembly.objects.iter().filter(|object| matches!(object.shape, AnyShape::Plane(_))).count();
     assert_eq!((assembly.objects.len(), ground), (85, 1));
-    let AnyBackground::Dome(sky) = assembly.background else { panic!("no sky") };
-    assert_eq!(sky.radius, 1e6);
+    assert!(matches!(&assembly.background, AnyBackground::Dome(sky) if sky.radius == 1e6));
     let sphere = |shape: &AnyShape| if let AnyShape::Sphere(sphere) = shape { Some(sphere.radius) } else { None };
     let placed = assembly
         .objects
@@ -101,9 +100,9 @@ fn check(frame: f64) {
     let (balls, trunk, limbs) = (&spheres[..3], &spheres[3..16], &spheres[16..]);
     pose.balls().into_iter().zip(balls).for_each(|(expected, ball)| assert_near(*ball, expected, 14.0));
 
-    for k in 0..8 {
+    for (k, sphere) in trunk[..8].iter().enumerate() {
         let step = k as f64 / 7.0;
-        assert_near(trunk[k], pose.local(32.0 * step, 0.0), 16.0 + 4.0 * step);
+        assert_near(*sphere, pose.local(32.0 * step, 0.0), 16.0 + 4.0 * step);
     }
     let beside = |y: f64, z: f64, x: f64| DVec3 { x, ..pose.local(y, z) };
     assert_near(trunk[8], pose.local(55.0, 0.0), 5.0);
@@ -129,47 +128,48 @@ fn every_sphere_is_where_the_article_puts_it() {
 }
 
 /// Knees and elbows at four instants, in the order of [`Pose::limbs`].
+const JOINTS: [(f64, [[f64; 3]; 4]); 4] = [
+    (
+        0.0,
+        [
+            [144.5902, 42.5511, -134.1192],
+            [136.9423, 44.9957, -165.6761],
+            [149.2561, 87.7826, -113.5741],
+            [149.8943, 86.0366, -183.0248],
+        ],
+    ),
+    (
+        7.5,
+        [
+            [142.8030, 41.8692, -133.7754],
+            [132.4461, 44.5442, -165.5156],
+            [148.1377, 87.1125, -115.6404],
+            [150.7983, 82.1297, -182.7888],
+        ],
+    ),
+    (
+        15.0,
+        [
+            [139.0631, 40.1044, -134.1332],
+            [131.1907, 44.3186, -165.6963],
+            [146.9833, 83.1235, -115.6043],
+            [148.4163, 81.5350, -180.9510],
+        ],
+    ),
+    (
+        22.5,
+        [
+            [140.4190, 40.7591, -134.5249],
+            [135.1236, 44.8479, -165.8536],
+            [150.1208, 83.5770, -113.5857],
+            [149.4342, 85.3222, -181.1202],
+        ],
+    ),
+];
+
 #[test]
 fn joints_bend_the_right_way() {
-    let joints = [
-        (
-            0.0,
-            [
-                [144.5902, 42.5511, -134.1192],
-                [136.9423, 44.9957, -165.6761],
-                [149.2561, 87.7826, -113.5741],
-                [149.8943, 86.0366, -183.0248],
-            ],
-        ),
-        (
-            7.5,
-            [
-                [142.8030, 41.8692, -133.7754],
-                [132.4461, 44.5442, -165.5156],
-                [148.1377, 87.1125, -115.6404],
-                [150.7983, 82.1297, -182.7888],
-            ],
-        ),
-        (
-            15.0,
-            [
-                [139.0631, 40.1044, -134.1332],
-                [131.1907, 44.3186, -165.6963],
-                [146.9833, 83.1235, -115.6043],
-                [148.4163, 81.5350, -180.9510],
-            ],
-        ),
-        (
-            22.5,
-            [
-                [140.4190, 40.7591, -134.5249],
-                [135.1236, 44.8479, -165.8536],
-                [150.1208, 83.5770, -113.5857],
-                [149.4342, 85.3222, -181.1202],
-            ],
-        ),
-    ];
-    for (frame, joints) in joints {
+    for (frame, joints) in JOINTS {
         let spheres = spheres(frame);
         for (expected, limb) in joints.into_iter().zip(spheres[16..].chunks(17)) {
             assert_near(limb[8], DVec3::from(expected), 5.0);
