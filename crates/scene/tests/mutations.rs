@@ -157,5 +157,4 @@ fn no_broken_scene_breaks_the_program() {
     }
     // Both happen often, or the mutations would test little.
     assert!(rendered > 500 && refused > 4000, "{rendered} rendered, {refused} refused");
-    eprintln!("{rendered} rendered, {refused} refused");
 }
