@@ -7,11 +7,13 @@ use crate::document::{Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::schema::Schema;
+use rule::Rule;
 use serde_json::Value;
 
 mod choice;
 mod family;
 mod names;
+mod rule;
 mod scalar;
 mod structure;
 mod words;
@@ -33,9 +35,8 @@ pub struct Validated {
 
 /// Checks a scene whose expressions are resolved.
 pub fn validate(tree: &Node) -> Validated {
-    let schema = Schema::get();
-    let mut walk = Walk { schema, tree, findings: Vec::new() };
-    let json = walk.value(tree, &Trail::Root, schema.root());
+    let mut walk = Walk { schema: Schema::get(), tree, findings: Vec::new() };
+    let json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
     Validated { json, findings: walk.findings }
 }
 
@@ -48,36 +49,24 @@ struct Walk<'t> {
 
 impl Walk<'_> {
     /// The plain JSON of a value, or nothing when it is wrong and must be left out.
-    fn value(&mut self, node: &Node, at: &Trail<'_>, schema: &'static Value) -> Option<Value> {
+    fn value(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Value> {
         if self.findings.len() >= MAX_FINDINGS {
             return None;
         }
-        let (name, target) = self.schema.follow(schema);
-        if let Some(branches) = target.get("anyOf").and_then(Value::as_array) {
-            return self.choice(node, at, name, branches);
+        if !rule.ways.is_empty() {
+            return self.choice(node, at, rule);
         }
-        if crate::schema::variants(target).next().is_some() {
-            return self.family(node, at, name.unwrap_or("kind"), target);
+        if rule.is_family() {
+            return self.family(node, at, rule);
         }
-        self.typed(node, at, name, target)
-    }
-
-    /// A value whose JSON type the schema fixes.
-    fn typed(
-        &mut self,
-        node: &Node,
-        at: &Trail<'_>,
-        name: Option<&'static str>,
-        schema: &'static Value,
-    ) -> Option<Value> {
         match &node.value {
-            Written::Null if words::allows(schema, "null") => Some(Value::Null),
-            Written::Number(number) if words::allows_number(schema) => self.number(node, at, number, schema),
-            Written::String(text) if words::allows(schema, "string") => self.string(node, at, text, name, schema),
-            Written::Bool(value) if words::allows(schema, "boolean") => Some((*value).into()),
-            Written::Array(elements) if words::allows(schema, "array") => self.array(node, at, elements, schema),
-            Written::Object(members) if words::allows(schema, "object") => self.object(node, at, members, name, schema),
-            _ => self.mismatch(node, at, &words::expected(self.schema, schema)),
+            Written::Null if rule.types.null => Some(Value::Null),
+            Written::Number(number) if rule.allows_number() => self.number(node, at, number, rule),
+            Written::String(text) if rule.types.string => self.string(node, at, text, rule),
+            Written::Bool(value) if rule.types.boolean => Some((*value).into()),
+            Written::Array(elements) if rule.types.array => self.array(node, at, elements, rule),
+            Written::Object(members) if rule.types.object => self.object(node, at, members, rule),
+            _ => self.mismatch(node, at, &words::allowed(self.schema, rule)),
         }
     }
 

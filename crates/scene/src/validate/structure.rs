@@ -1,10 +1,10 @@
 //! Arrays and objects.
 
+use super::rule::Rule;
 use super::{MAX_FINDINGS, Walk, words};
 use crate::document::{Members, Node};
 use crate::path::Trail;
 use crate::report::Finding;
-use crate::schema::exactly_one;
 use crate::suggest::meant_or_all;
 use serde_json::{Map, Value};
 
@@ -18,22 +18,21 @@ impl Walk<'_> {
         node: &Node,
         at: &Trail<'_>,
         elements: &[Node],
-        schema: &'static Value,
+        rule: &'static Rule,
     ) -> Option<Value> {
-        let bound = |key: &str| schema.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
-        let (least, most, found) = (bound("minItems"), bound("maxItems"), elements.len());
-        let wanted = match (least, most) {
+        let found = elements.len();
+        let wanted = match rule.length {
             (Some(least), Some(most)) if least == most && found != least => Some(least.to_string()),
             (Some(least), _) if found < least => Some(format!("at least {least}")),
             (_, Some(most)) if found > most => Some(format!("at most {most}")),
             _ => None,
         };
         if let Some(wanted) = wanted {
-            let what = words::elements(self.schema, schema);
+            let what = words::elements(self.schema, rule.schema);
             let message = format!("expected {wanted} {what} in this array, found {found}");
             return self.report(node, at, Finding::error(message));
         }
-        let items = schema.get("items")?;
+        let items = rule.items?.get();
         let mut values = Vec::with_capacity(found);
         for (i, element) in elements.iter().enumerate() {
             if self.findings.len() >= MAX_FINDINGS {
@@ -49,36 +48,32 @@ impl Walk<'_> {
         node: &Node,
         at: &Trail<'_>,
         members: &Members,
-        name: Option<&'static str>,
-        schema: &'static Value,
+        rule: &'static Rule,
     ) -> Option<Value> {
-        let properties = schema.get("properties").and_then(Value::as_object);
-        let others = schema.get("additionalProperties").filter(|others| others.is_object());
         let root = at.is_root();
-        let loose = root || name.is_some_and(|name| LOOSE.contains(&name)) || properties.is_none();
+        let loose = root || rule.name.is_some_and(|name| LOOSE.contains(&name)) || rule.fields.is_none();
         let mut json = Map::new();
         let mut sound = true;
         for (key, member) in members.iter() {
             if self.findings.len() >= MAX_FINDINGS {
                 return None;
             }
-            let Some(schema) = properties.and_then(|known| known.get(key)).or(others) else {
-                let known: Vec<&str> =
-                    properties.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
+            let Some(field) = rule.field(key) else {
+                let known: Vec<&str> = rule.fields.iter().flatten().map(|(name, _)| *name).collect();
                 let finding = unknown_key(key, &known, at).on(member.key_place);
                 self.findings.push(finding.at(&at.key(key)));
                 sound = false;
                 continue;
             };
-            match self.value(&member.node, &at.key(key), schema) {
+            match self.value(&member.node, &at.key(key), field.get()) {
                 Some(value) => {
                     json.insert(key.clone(), value);
                 }
                 None => sound = false,
             }
         }
-        let complete = self.required(node, at, members, schema);
-        self.exactly_one(node, at, members, schema);
+        let complete = self.required(node, at, members, rule);
+        self.exactly_one(node, at, members, rule);
         if root {
             json.entry("version").or_insert(1.into());
         }
@@ -86,9 +81,8 @@ impl Walk<'_> {
     }
 
     /// Whether all keys stand that must stand.
-    fn required(&mut self, node: &Node, at: &Trail<'_>, members: &Members, schema: &'static Value) -> bool {
-        let required = schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
-        let missing: Vec<&str> = required.filter(|key| !members.contains_key(*key)).collect();
+    fn required(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) -> bool {
+        let missing: Vec<&str> = rule.required.iter().copied().filter(|key| !members.contains_key(*key)).collect();
         if missing.is_empty() {
             return true;
         }
@@ -102,16 +96,16 @@ impl Walk<'_> {
     }
 
     /// Complains when not exactly one of some keys stands.
-    fn exactly_one(&mut self, node: &Node, at: &Trail<'_>, members: &Members, schema: &'static Value) {
-        let keys = exactly_one(schema);
-        let found: Vec<&str> = keys.iter().copied().filter(|key| members.contains_key(*key)).collect();
-        if keys.is_empty() || found.len() == 1 {
+    fn exactly_one(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) {
+        let keys = rule.exactly_one.iter().copied();
+        let found: Vec<&str> = keys.clone().filter(|key| members.contains_key(*key)).collect();
+        if rule.exactly_one.is_empty() || found.len() == 1 {
             return;
         }
         let found = if found.is_empty() { "none".into() } else { words::list(found, "and") };
         let message = format!("exactly one of {} must stand here, found {found}", words::list(keys, "and"));
         // A misspelt one is its own message.
-        let misspelt = members.keys().any(|key| schema.get("properties").is_some_and(|known| known.get(key).is_none()));
+        let misspelt = members.keys().any(|key| rule.field(key).is_none());
         let help = match found.as_str() {
             "none" if misspelt => return,
             "none" => "write for example \"shape\": \"sphere\"",

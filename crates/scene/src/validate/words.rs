@@ -1,5 +1,6 @@
 //! A schema in words: "a number", "3 numbers", "a shape".
 
+use super::rule::Rule;
 use crate::schema::{Schema, variants};
 use serde_json::Value;
 
@@ -17,9 +18,17 @@ pub fn allows_number(schema: &Value) -> bool {
     allows(schema, "number") || allows(schema, "integer")
 }
 
-/// What may stand here, in words.
-pub fn expected(all: &Schema, schema: &Value) -> String {
+/// What a rule allows, in words.
+pub fn allowed(all: &Schema, rule: &Rule) -> String {
+    in_words(all, rule.name, rule.schema)
+}
+
+fn expected(all: &Schema, schema: &Value) -> String {
     let (name, target) = all.follow(schema);
+    in_words(all, name, target)
+}
+
+fn in_words(all: &Schema, name: Option<&str>, target: &Value) -> String {
     if let Some(branches) = target.get("anyOf").and_then(Value::as_array) {
         return choice(all, name, branches);
     }
@@ -41,7 +50,7 @@ pub fn expected(all: &Schema, schema: &Value) -> String {
 }
 
 /// What may stand at a choice, in words; `name` is the definition that offers it.
-pub fn choice(all: &Schema, name: Option<&str>, branches: &[Value]) -> String {
+fn choice(all: &Schema, name: Option<&str>, branches: &[Value]) -> String {
     match name {
         Some("Color") => "a colour ([r, g, b], \"#rrggbb\" or one number)".into(),
         Some("MaterialRef") => "a material {...} or the name of one".into(),
@@ -74,6 +83,15 @@ fn array(all: &Schema, schema: &Value) -> String {
         (Some(least), Some(most)) if least == most => format!("an array of {least} {what}"),
         _ => "an array [...]".into(),
     }
+}
+
+/// The words of an enum without contents.
+pub fn fixed(family: &Value) -> impl Iterator<Item = &str> {
+    variants(family).flat_map(|variant| {
+        let one = variant.get("const").and_then(Value::as_str);
+        let several = variant.get("enum").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
+        one.into_iter().chain(several)
+    })
 }
 
 /// A definition's name without the number that tells it from others of the same name.
