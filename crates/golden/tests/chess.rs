@@ -1,7 +1,5 @@
 //! The chess board is the one of the engine that it comes from: 380 primitives under five lights, two cameras.
 
-#![expect(clippy::unwrap_used, reason = "a test")]
-
 use juggler::scene::description::Description;
 use juggler::scene::{Object, Scene};
 use juggler::tracer::shape::AnyShape;
