@@ -113,7 +113,7 @@ impl Bvh {
             return;
         }
         let lanes = Lanes::new(rays);
-        let mut waiting = (1 << count) - 1;
+        let mut waiting: u32 = (1 << count) - 1;
         let mut stack = Stack::<SIZE>::new();
         self.push_slots(Child::ROOT, &interval, &mut stack);
         while let Some((_, place)) = stack.pop() {
@@ -127,16 +127,11 @@ impl Bvh {
             while active != 0 {
                 let lane = active.trailing_zeros() as usize;
                 active &= active - 1;
-                let ray = &rays[lane];
-                let met = if child.is_leaf() {
-                    leaf.any(base + lane, ray, child.items())
-                } else {
-                    self.any_below(child, &mut stack, base + lane, ray, leaf)
+                occluded[lane] = match child.is_leaf() {
+                    true => leaf.any(base + lane, &rays[lane], child.items()),
+                    false => self.any_below(child, &mut stack, base + lane, &rays[lane], leaf),
                 };
-                if met {
-                    occluded[lane] = true;
-                    waiting &= !(1 << lane);
-                }
+                waiting &= !(u32::from(occluded[lane]) << lane);
             }
             if waiting == 0 {
                 return;

@@ -23,13 +23,35 @@ pub struct PixelSum {
 }
 
 impl PixelSum {
-    /// Adds sample `index`; indices must come in order, starting at a block's first.
+    /// Adds the samples from `index` on; indices must come in order, starting at a block's first. A sample that is
+    /// no finite number counts as black. Returns how many were not.
     #[inline]
-    pub fn add(&mut self, index: u32, radiance: Rgb) {
-        self.block += radiance;
-        if index % BLOCK == BLOCK - 1 {
-            self.close();
+    pub fn add(&mut self, mut index: u32, mut samples: &[Rgb]) -> u64 {
+        let mut lost = 0;
+        while !samples.is_empty() {
+            let room = (BLOCK - index % BLOCK) as usize;
+            let (now, rest) = samples.split_at(room.min(samples.len()));
+            lost += self.add_to_block(now);
+            if now.len() == room {
+                self.close();
+            }
+            index = index.wrapping_add(now.len() as u32);
+            samples = rest;
         }
+        lost
+    }
+
+    #[inline]
+    fn add_to_block(&mut self, samples: &[Rgb]) -> u64 {
+        let sum = samples.iter().fold(self.block, |sum, sample| sum + *sample);
+        if sum.is_finite() {
+            self.block = sum;
+            return 0;
+        }
+        // Rarely: one of them spoils the sum.
+        let (finite, lost): (Vec<Rgb>, Vec<Rgb>) = samples.iter().partition(|sample| sample.is_finite());
+        self.block = finite.iter().fold(self.block, |sum, sample| sum + *sample);
+        lost.len() as u64
     }
 
     fn close(&mut self) {
@@ -56,9 +78,12 @@ mod tests {
     fn the_mean_is_the_mean_of_blocks_in_order() {
         let samples: Vec<Rgb> = (0..40).map(|i| Rgb::new(i as f32, 0.1, 1e-3 * i as f32)).collect();
         let mut sum = PixelSum::default();
+        let mut by_pieces = PixelSum::default();
+        assert_eq!(sum.add(0, &samples), 0);
         for (index, sample) in samples.iter().enumerate() {
-            sum.add(index as u32, *sample);
+            by_pieces.add(index as u32, std::slice::from_ref(sample));
         }
+        assert_eq!(sum, by_pieces);
         let mut expected = [0f64; 3];
         for block in samples.chunks(BLOCK as usize) {
             let block = block.iter().fold(Rgb::BLACK, |a, b| a + *b);
@@ -69,5 +94,12 @@ mod tests {
         let expected = expected.map(|e| (e / 40.0) as f32);
         assert_eq!(sum.mean(40).to_array(), expected);
         assert_eq!(PixelSum::default().mean(0), Rgb::BLACK);
+    }
+    #[test]
+    fn samples_that_are_no_numbers_count_as_black_and_are_counted() {
+        let (nan, infinite) = (Rgb::new(0.0, f32::NAN, 0.0), Rgb::new(f32::INFINITY, 0.0, 0.0));
+        let mut sum = PixelSum::default();
+        assert_eq!(sum.add(0, &[Rgb::WHITE, nan, Rgb::WHITE, infinite]), 2);
+        assert_eq!(sum.mean(4), Rgb::splat(0.5));
     }
 }

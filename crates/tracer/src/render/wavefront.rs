@@ -230,17 +230,14 @@ impl<'j> Engine<'j> {
 
     /// Adds the finished samples to their pixels.
     fn develop(&mut self, work: &Work, samples: u64, slots: Range<u64>, sums: &mut [PixelSum]) {
-        let (mut pixel, mut sample) = ((slots.start / samples) as usize, (slots.start % samples) as u32);
-        let count = samples as u32;
-        for radiance in &self.harvest.radiance {
-            let finite = radiance.is_finite();
-            self.rays.not_finite += u64::from(!finite);
-            let radiance = if finite { *radiance } else { Rgb::BLACK };
-            sums[pixel].add(work.samples.start + sample, radiance);
-            sample += 1;
-            if sample == count {
-                (pixel, sample) = (pixel + 1, 0);
-            }
+        let mut rest = self.harvest.radiance.as_slice();
+        let mut at = slots.start;
+        while !rest.is_empty() {
+            let (pixel, sample) = (at / samples, at % samples);
+            let (now, later) = rest.split_at(((samples - sample) as usize).min(rest.len()));
+            self.rays.not_finite += sums[pixel as usize].add(work.samples.start + sample as u32, now);
+            at += now.len() as u64;
+            rest = later;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Objects as tracing sees them: spheres in world space, everything else in its own.
 
-use super::{Object, WorldHit};
+use super::Object;
 use crate::material::MaterialTable;
 use crate::shape::{AnyShape, Hit, intersect_sphere, sphere_surface};
 use crate::surface::Surface;
@@ -26,14 +26,13 @@ impl Placed {
         Self { object, sphere, plain }
     }
 
-    /// The nearest hit in the ray's range; `number` is the object's.
+    /// The nearest hit in the ray's range.
     #[inline]
-    pub fn intersect(&self, number: u32, ray: &Ray) -> Option<WorldHit> {
-        let hit = match self.sphere {
-            Some((center, radius)) => intersect_sphere(center, radius, ray)?,
-            None => self.object.shape.intersect(&self.object.transform.ray_to_local(ray))?,
-        };
-        Some(WorldHit { hit, object: number })
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        match self.sphere {
+            Some((center, radius)) => intersect_sphere(center, radius, ray),
+            None => self.object.shape.intersect(&self.object.transform.ray_to_local(ray)),
+        }
     }
 
     /// Whether anything is hit in the ray's range.
@@ -86,14 +85,12 @@ impl Item {
         }
     }
 
-    /// The nearest hit in the ray's range.
-    #[inline]
-    pub fn intersect(&self, objects: &[Placed], ray: &Ray) -> Option<WorldHit> {
+    /// The nearest hit in the ray's range, and the number of the object.
+    #[inline(always)]
+    pub fn intersect(&self, objects: &[Placed], ray: &Ray) -> Option<(Hit, u32)> {
         match *self {
-            Self::Sphere { center, radius, object } => {
-                Some(WorldHit { hit: intersect_sphere(center, radius, ray)?, object })
-            }
-            Self::Other { object } => objects[object as usize].intersect(object, ray),
+            Self::Sphere { center, radius, object } => Some((intersect_sphere(center, radius, ray)?, object)),
+            Self::Other { object } => Some((objects[object as usize].intersect(ray)?, object)),
         }
     }
 

@@ -29,9 +29,10 @@ fn crowd(random: &mut Random) -> World {
 fn brute_force(world: &World, ray: &Ray) -> WorldHit {
     let mut best = WorldHit::NONE;
     for (number, placed) in world.objects.iter().enumerate() {
-        let Some(hit) = placed.intersect(number as u32, &ray.up_to(best.hit.t.min(ray.t_max))) else { continue };
-        if hit.hit.t < best.hit.t || (hit.hit.t == best.hit.t && hit.object < best.object) {
-            best = hit;
+        let Some(hit) = placed.intersect(&ray.up_to(best.hit.t.min(ray.t_max))) else { continue };
+        let object = number as u32;
+        if hit.t < best.hit.t || (hit.t == best.hit.t && object < best.object) {
+            best = WorldHit { hit, object };
         }
     }
     best

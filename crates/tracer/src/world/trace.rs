@@ -1,6 +1,7 @@
 //! The questions that rays ask: what is nearest, is anything in the way, how much light gets through.
 
 use super::{World, WorldHit};
+use crate::shape::Hit;
 use juggler_bvh::{Leaf, PACKET};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
@@ -18,8 +19,8 @@ impl Leaf for Nearest<'_> {
     #[inline]
     fn closest(&mut self, lane: usize, ray: &mut Ray, range: Range<u32>) {
         for item in &self.world.items[range.start as usize..range.end as usize] {
-            if let Some(hit) = item.intersect(&self.world.objects, ray) {
-                keep(&mut self.hits[lane], hit, ray);
+            if let Some((hit, object)) = item.intersect(&self.world.objects, ray) {
+                keep(&mut self.hits[lane], hit, object, ray);
             }
         }
     }
@@ -33,11 +34,11 @@ impl Leaf for Nearest<'_> {
 
 /// The nearer one stays; of two at the same distance the one with the lower number, so that the order of
 /// traversal cannot show.
-#[inline]
-fn keep(best: &mut WorldHit, hit: WorldHit, ray: &mut Ray) {
-    if hit.hit.t < best.hit.t || (hit.hit.t == best.hit.t && hit.object < best.object) {
-        ray.t_max = hit.hit.t;
-        *best = hit;
+#[inline(always)]
+fn keep(best: &mut WorldHit, hit: Hit, object: u32, ray: &mut Ray) {
+    if hit.t < best.hit.t || (hit.t == best.hit.t && object < best.object) {
+        ray.t_max = hit.t;
+        *best = WorldHit { hit, object };
     }
 }
 
@@ -59,8 +60,8 @@ impl World {
         for number in &self.unbounded {
             let placed = &self.objects[*number as usize];
             for (ray, best) in rays.iter_mut().zip(&mut *hits) {
-                if let Some(hit) = placed.intersect(*number, ray) {
-                    keep(best, hit, ray);
+                if let Some(hit) = placed.intersect(ray) {
+                    keep(best, hit, *number, ray);
                 }
             }
         }
