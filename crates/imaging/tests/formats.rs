@@ -99,13 +99,28 @@ fn all_levels_of_a_16_bit_png_are_exact() {
 }
 
 #[test]
-fn png_says_its_curve_and_readers_undo_it() {
+fn every_png_is_for_srgb_displays_whatever_the_look() {
+    let image = Image::filled(3, 2, Rgb::splat(0.25));
     for curve in [AnyCurve::Gamma(Gamma { gamma: 2.2 }), AnyCurve::Linear(juggler_imaging::tone::Linear {})] {
         let tone = Tone { curve, exposure_stops: 0.0 };
-        let options = Options { png_16_bit: true, ..Options::default() };
-        let make = |i: &Image| Header { tone: tone.clone(), options, ..header(i) };
-        check(Format::Png, make, 1.0, |_, x| 2e-5 * x + 2e-5);
+        let level = (tone.curve.curve().encode(0.25) * 255.0).round() / 255.0;
+        let bytes = encode(Format::Png, &image, &Header { tone, ..header(&image) });
+        let info = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap().info().clone();
+        assert!(info.srgb.is_some() && info.gama_chunk.is_none_or(|gamma| gamma.into_scaled() == 45_455));
+        let back = f64::from(read(&bytes).pixels()[0].g);
+        assert!((f64::from(juggler_math::color::srgb_encode(back as f32)) - level).abs() < 1e-4, "{back} {level}");
     }
+}
+
+#[test]
+fn the_gamma_that_a_foreign_png_names_is_undone() {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_source_gamma(png::ScaledFloat::new(1.0));
+    encoder.write_header().unwrap().write_image_data(&[51, 102, 255]).unwrap();
+    let pixel = read(&bytes).pixels()[0];
+    assert!((pixel.r - 0.2).abs() < 1e-6 && (pixel.g - 0.4).abs() < 1e-6 && pixel.b == 1.0, "{pixel:?}");
 }
 
 #[test]

@@ -1,12 +1,12 @@
-//! PNG: 8 or 16 bits a channel, streamed; the curve stands in sRGB or gAMA and cHRM chunks, texts in tEXt
-//! or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
+//! PNG: 8 or 16 bits a channel, streamed; tagged as sRGB, because that is the display that every tone curve aims
+//! at; texts in tEXt or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
 
 use super::{Header, Inspected, ReadSeek, RowWriter, Source};
 use crate::ImageError;
 use crate::output::Destination;
-use crate::tone::{AnyCurve, Curve, Gamma, Quantizer, Srgb};
+use crate::tone::{Curve, Gamma, Quantizer, Srgb};
 use juggler_math::{Image, Rgb};
-use png::{BitDepth, ColorType, DecodingError, EncodingError, ScaledFloat, SourceChromaticities, StreamWriter};
+use png::{BitDepth, ColorType, DecodingError, EncodingError, StreamWriter};
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -96,11 +96,7 @@ fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, En
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(if header.options.png_16_bit { BitDepth::Sixteen } else { BitDepth::Eight });
     encoder.set_compression(png::Compression::Fast);
-    match &header.tone.curve {
-        AnyCurve::Srgb(_) => encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual),
-        AnyCurve::Gamma(curve) => set_gamma(&mut encoder, curve.gamma),
-        AnyCurve::Linear(_) => set_gamma(&mut encoder, 1.0),
-    }
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (key, text) in &header.metadata {
         if text.is_ascii() && key.is_ascii() {
             encoder.add_text_chunk(key.clone(), text.clone())?;
@@ -109,17 +105,6 @@ fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, En
         }
     }
     encoder.write_header()?.into_stream_writer()
-}
-
-fn set_gamma<W: Write>(encoder: &mut png::Encoder<W>, gamma: f64) {
-    encoder.set_source_gamma(ScaledFloat::new((1.0 / gamma) as f32));
-    // White and primaries of ITU-R BT.709.
-    encoder.set_source_chromaticities(SourceChromaticities::new(
-        (0.3127, 0.3290),
-        (0.64, 0.33),
-        (0.30, 0.60),
-        (0.15, 0.06),
-    ));
 }
 
 fn failed(place: &str, error: EncodingError) -> ImageError {

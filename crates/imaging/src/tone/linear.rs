@@ -1,10 +1,11 @@
-//! No curve: the value itself. In JSON: `{"linear": {}}`.
+//! No curve: linear values are the levels. In JSON: `{"linear": {}}`.
 
 use super::Curve;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// No curve: linear values go straight to levels.
+/// No curve: linear values go straight to levels, as programs of the 1980s did; on today's displays that is dark
+/// and rich in contrast.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Linear {}

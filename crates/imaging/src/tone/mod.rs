@@ -1,4 +1,5 @@
-//! Tone: from linear light to the levels of a display. Exposure first, then a curve per channel.
+//! Tone: from linear light to the levels of an sRGB display. Exposure first, then a curve per channel. Another
+//! curve than sRGB is a look, as the Amiga's pictures had one: files do not undo it by a tag of their own.
 //! In JSON: `{"curve": {"srgb": {}}, "exposure_stops": 0}`.
 
 mod gamma;
