@@ -21,42 +21,55 @@ impl Bvh {
     /// [`Bvh::closest`] for rays that go the same way; a ray's lane is its number in the slice. More than
     /// [`PACKET`] rays are taken in groups of as many. Rays that do not share an octant are traced alone.
     pub fn closest_packet(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
-        for (group, rays) in rays.chunks_mut(PACKET).enumerate() {
-            let base = group * PACKET;
-            match self.stats.stack {
-                need if need <= SMALL => self.closest_group::<SMALL>(base, rays, leaf),
-                need if need <= MEDIUM => self.closest_group::<MEDIUM>(base, rays, leaf),
-                _ => self.closest_group::<LARGE>(base, rays, leaf),
-            }
+        match self.stats.stack {
+            need if need <= SMALL => self.closest_groups::<SMALL>(rays, leaf),
+            need if need <= MEDIUM => self.closest_groups::<MEDIUM>(rays, leaf),
+            _ => self.closest_groups::<LARGE>(rays, leaf),
         }
     }
 
     /// [`Bvh::any`] for rays that go the same way; see [`Bvh::closest_packet`] and [`Bvh::any_batch`].
     pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
-        for (group, (rays, occluded)) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)).enumerate() {
-            let base = group * PACKET;
-            match self.stats.stack {
-                need if need <= SMALL => self.any_group::<SMALL>(base, rays, occluded, leaf),
-                need if need <= MEDIUM => self.any_group::<MEDIUM>(base, rays, occluded, leaf),
-                _ => self.any_group::<LARGE>(base, rays, occluded, leaf),
-            }
+        match self.stats.stack {
+            need if need <= SMALL => self.any_groups::<SMALL>(rays, occluded, leaf),
+            need if need <= MEDIUM => self.any_groups::<MEDIUM>(rays, occluded, leaf),
+            _ => self.any_groups::<LARGE>(rays, occluded, leaf),
         }
     }
 
-    fn closest_group<const SIZE: usize>(&self, base: usize, rays: &mut [Ray], leaf: &mut impl Leaf) {
+    fn closest_groups<const SIZE: usize>(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
+        let mut stack = Stack::<SIZE>::new();
+        for (group, rays) in rays.chunks_mut(PACKET).enumerate() {
+            self.closest_group(&mut stack, group * PACKET, rays, leaf);
+        }
+    }
+
+    fn any_groups<const SIZE: usize>(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
+        let mut stack = Stack::<SIZE>::new();
+        occluded.fill(false);
+        for (group, (rays, occluded)) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)).enumerate() {
+            self.any_group(&mut stack, group * PACKET, rays, occluded, leaf);
+        }
+    }
+
+    fn closest_group<const SIZE: usize>(
+        &self,
+        stack: &mut Stack<SIZE>,
+        base: usize,
+        rays: &mut [Ray],
+        leaf: &mut impl Leaf,
+    ) {
         let Some(mut interval) = Slabs::of_rays(rays) else {
-            let mut stack = Stack::<SIZE>::new();
             for (lane, ray) in rays.iter_mut().enumerate() {
-                self.closest_below(Child::ROOT, &mut stack, base + lane, ray, leaf);
+                self.closest_below(Child::ROOT, stack, base + lane, ray, leaf);
             }
             return;
         };
-        if self.nodes[0].test(&interval).0 == 0 {
+        self.push_slots(Child::ROOT, &interval, stack);
+        if stack.len() == 0 {
             return;
         }
         let mut lanes = Lanes::new(rays);
-        let mut stack = Stack::<SIZE>::new();
-        self.push_slots(Child::ROOT, &interval, &mut stack);
         while let Some((enter, place)) = stack.pop() {
             if enter > interval.t_max {
                 continue;
@@ -73,12 +86,12 @@ impl Bvh {
                 }
                 interval.t_max = lanes.t_max();
             } else if active.count_ones() > FEW {
-                self.push_slots(child, &interval, &mut stack);
+                self.push_slots(child, &interval, stack);
             } else {
                 while active != 0 {
                     let lane = active.trailing_zeros() as usize;
                     active &= active - 1;
-                    self.closest_below(child, &mut stack, base + lane, &mut rays[lane], leaf);
+                    self.closest_below(child, stack, base + lane, &mut rays[lane], leaf);
                     lanes.shorten(lane, rays[lane].t_max);
                 }
                 interval.t_max = lanes.t_max();
@@ -98,30 +111,34 @@ impl Bvh {
         }
     }
 
-    fn any_group<const SIZE: usize>(&self, base: usize, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
+    fn any_group<const SIZE: usize>(
+        &self,
+        stack: &mut Stack<SIZE>,
+        base: usize,
+        rays: &[Ray],
+        occluded: &mut [bool],
+        leaf: &mut impl Leaf,
+    ) {
         let count = rays.len().min(occluded.len());
         let (rays, occluded) = (&rays[..count], &mut occluded[..count]);
-        occluded.fill(false);
         let Some(interval) = Slabs::of_rays(rays) else {
-            let mut stack = Stack::<SIZE>::new();
             for (lane, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-                *occluded = self.any_below(Child::ROOT, &mut stack, base + lane, ray, leaf);
+                *occluded = self.any_below(Child::ROOT, stack, base + lane, ray, leaf);
             }
             return;
         };
-        if self.nodes[0].test(&interval).0 == 0 {
+        self.push_slots(Child::ROOT, &interval, stack);
+        if stack.len() == 0 {
             return;
         }
         let lanes = Lanes::new(rays);
         let mut waiting: u32 = (1 << count) - 1;
-        let mut stack = Stack::<SIZE>::new();
-        self.push_slots(Child::ROOT, &interval, &mut stack);
         while let Some((_, place)) = stack.pop() {
             let (node, slot) = (&self.nodes[place as usize / WIDTH], place as usize % WIDTH);
             let mut active = waiting & lanes.test(&node.bounds, slot);
             let child = node.children[slot];
             if active.count_ones() > FEW && !child.is_leaf() {
-                self.push_slots(child, &interval, &mut stack);
+                self.push_slots(child, &interval, stack);
                 continue;
             }
             while active != 0 {
@@ -129,11 +146,12 @@ impl Bvh {
                 active &= active - 1;
                 occluded[lane] = match child.is_leaf() {
                     true => leaf.any(base + lane, &rays[lane], child.items()),
-                    false => self.any_below(child, &mut stack, base + lane, &rays[lane], leaf),
+                    false => self.any_below(child, stack, base + lane, &rays[lane], leaf),
                 };
                 waiting &= !(u32::from(occluded[lane]) << lane);
             }
             if waiting == 0 {
+                stack.truncate(0);
                 return;
             }
         }

@@ -83,7 +83,8 @@ pub(super) fn reach(
     let to_centre = centre - from;
     let distance = to_centre.length();
     let factor = attenuation.at(distance);
-    if !(distance > 0.0 && distance.is_finite() && factor > 0.0 && factor.is_finite()) {
+    let usable = |number: f32| number > 0.0 && number < f32::INFINITY;
+    if !(usable(distance) && usable(factor)) {
         return None;
     }
     let towards_centre = to_centre * (1.0 / distance);

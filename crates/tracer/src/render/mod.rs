@@ -12,6 +12,7 @@ use juggler_math::Rgb;
 use std::ops::Range;
 
 mod control;
+mod expose;
 mod schedule;
 mod wavefront;
 

@@ -6,14 +6,12 @@
 //! that size wherever it stands. So the order in which a sample's contributions are added follows from its
 //! own tree of rays alone. The same cuts bound the memory.
 
+use super::expose::expose;
 use super::{Control, Job, Rays, Tile, Work};
-use crate::camera::LANES;
 use crate::film::PixelSum;
-use crate::integrator::{Emit, Harvest, Path, Queue};
-use crate::sampler::Sampler;
+use crate::integrator::{Emit, Harvest, Queue};
 use crate::world::WorldHit;
-use juggler_bvh::PACKET;
-use juggler_math::{Rgb, UVec2, Vec2};
+use juggler_math::Rgb;
 use std::ops::Range;
 
 /// Samples in flight at once.
@@ -71,63 +69,10 @@ impl<'j> Engine<'j> {
     fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>) {
         self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
         let mut camera = self.spare.pop().unwrap_or_default();
-        self.expose(work, samples, slots, &mut camera);
+        expose(self.job, work, samples, slots, &mut camera);
         self.stack.push(camera);
         while let Some(queue) = self.stack.pop() {
             self.segment(queue);
-        }
-    }
-
-    /// The camera's rays.
-    fn expose(&self, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
-        let mut slot = 0;
-        let mut at = slots.start;
-        while at < slots.end {
-            let pixel = at / samples;
-            let column = work.pixels.x + (pixel % u64::from(work.pixels.width)) as u32;
-            let row = work.pixels.y + (pixel / u64::from(work.pixels.width)) as u32;
-            let stream = Sampler::new(self.job.pattern, self.job.seed, UVec2::new(column, row));
-            let count = (slots.end.min((pixel + 1) * samples) - at) as usize;
-            let first = work.samples.start + (at % samples) as u32;
-            let center = Vec2::new(column as f32, row as f32) + 0.5;
-            self.expose_pixel(center, &stream, first, slot..slot + count as u32, queue);
-            slot += count as u32;
-            at += count as u64;
-        }
-    }
-
-    /// The camera's rays of samples of one pixel, from sample `first` on.
-    fn expose_pixel(&self, center: Vec2, stream: &Sampler, first: u32, slots: Range<u32>, queue: &mut Queue) {
-        let Job { camera, filter, samples, .. } = self.job;
-        let needs_lens = camera.needs_lens();
-        for start in slots.clone().step_by(LANES) {
-            let index = first + (start - slots.start);
-            let (mut films, mut weights) = ([[center.x; LANES], [center.y; LANES]], [1.0; LANES]);
-            if *samples > 1 {
-                let mut places = [Vec2::ZERO; LANES];
-                stream.first_points(index, &mut places);
-                for i in 0..LANES {
-                    let sample = filter.sample(places[i]);
-                    films[0][i] = center.x + sample.offset.x;
-                    films[1][i] = center.y + sample.offset.y;
-                    weights[i] = sample.weight;
-                }
-            }
-            let mut samplers: [Sampler; LANES] = std::array::from_fn(|i| stream.sample(index + i as u32));
-            samplers.iter_mut().for_each(|sampler| sampler.skip(1));
-            let mut lenses = [Vec2::splat(0.5); LANES];
-            if needs_lens {
-                lenses = std::array::from_fn(|i| samplers[i].next_2d());
-            }
-            let count = LANES.min((slots.end - start) as usize);
-            camera.rays(&films, &lenses, count, &mut queue.rays);
-            let path = |i: usize| Path {
-                weight: Rgb::splat(weights[i]),
-                depth: 0,
-                sampler: samplers[i],
-                slot: start + i as u32,
-            };
-            queue.paths.extend((0..count).map(path));
         }
     }
 
@@ -146,9 +91,7 @@ impl<'j> Engine<'j> {
         self.hits.resize(queue.len(), WorldHit::NONE);
         let from_camera = queue.paths.first().is_some_and(|path| path.depth == 0);
         if from_camera {
-            for (rays, hits) in queue.rays.chunks_mut(PACKET).zip(self.hits.chunks_mut(PACKET)) {
-                self.job.world.closest_packet(rays, hits);
-            }
+            self.job.world.closest_packet(&mut queue.rays, &mut self.hits);
         } else {
             self.rays.secondary += queue.len() as u64;
             self.job.world.closest_batch(&mut queue.rays, &mut self.hits);
@@ -184,9 +127,7 @@ impl<'j> Engine<'j> {
             self.rays.shadow += queue.rays.len() as u64;
             self.through.resize(queue.rays.len(), Rgb::BLACK);
             if number < last {
-                for (rays, through) in queue.rays.chunks(PACKET).zip(self.through.chunks_mut(PACKET)) {
-                    self.job.world.transmittance_packet(rays, through);
-                }
+                self.job.world.transmittance_packet(&queue.rays, &mut self.through);
             } else {
                 self.job.world.transmittance_batch(&queue.rays, &mut self.through);
             }

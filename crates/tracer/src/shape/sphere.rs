@@ -74,7 +74,7 @@ pub fn intersect_sphere(center: Vec3, radius: f32, ray: &Ray) -> Option<Hit> {
 
 /// The surface at a hit that [`intersect_sphere`] gave for this ray; `local` is relative to the centre. Its `uv`
 /// is left out: two arc tangents that most materials never ask for.
-#[inline]
+#[inline(always)]
 pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surface {
     let (origin, direction) = double(ray);
     let (center, wide) = (center.as_dvec3(), f64::from(radius));
@@ -86,9 +86,8 @@ pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surfac
     // Within 2^-16 of unit length by now; one step of Newton's iteration for 1/√x leaves less than 2^-32.
     let unit = off * (1.5 - 0.5 * off.length_squared());
     let (point, normal) = ((center + unit * wide).as_vec3(), unit.as_vec3());
-    let local = (unit * wide).as_vec3();
     let error = robust::gamma(2) * point.abs().dot(normal.abs());
-    Surface { local, ..Surface::new(point, error, normal, Vec2::ZERO) }
+    Surface { point, error, normal, shading_normal: normal, uv: Vec2::ZERO, local: normal * radius }
 }
 
 /// The distance of a hit before it was rounded.
@@ -119,7 +118,7 @@ impl Shape for Sphere {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let surface = sphere_surface(Vec3::ZERO, self.radius, ray, hit);
-        Surface { uv: longitude_latitude(surface.normal), ..surface }
+        Surface { uv: longitude_latitude(surface.normal), local: surface.point, ..surface }
     }
 
     fn area(&self) -> f32 {

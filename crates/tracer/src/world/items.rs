@@ -45,7 +45,7 @@ impl Placed {
     }
 
     /// The surface at a hit, world space.
-    #[inline]
+    #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         match self.sphere {
             Some((center, radius)) if self.plain => sphere_surface(center, radius, ray, hit),

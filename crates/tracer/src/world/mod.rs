@@ -156,7 +156,7 @@ impl World {
     }
 
     /// The surface where `ray` made `hit`.
-    #[inline]
+    #[inline(always)]
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
         let placed = &self.objects[hit.object as usize];
         Vertex { surface: placed.surface(ray, &hit.hit), material: placed.object.material, object: hit.object }

@@ -2,7 +2,7 @@
 
 use super::{World, WorldHit};
 use crate::shape::Hit;
-use juggler_bvh::{Leaf, PACKET};
+use juggler_bvh::Leaf;
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
 
@@ -43,7 +43,7 @@ fn keep(best: &mut WorldHit, hit: Hit, object: u32, ray: &mut Ray) {
 }
 
 impl World {
-    /// The nearest hits of at most [`PACKET`] rays that go much the same way.
+    /// The nearest hits of any number of rays that go much the same way as their neighbours.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
         self.closest_unbounded(rays, hits);
         self.bvh.closest_packet(rays, &mut Nearest { world: self, hits });
@@ -74,30 +74,25 @@ impl World {
         hits[0]
     }
 
-    /// How much of a light's radiance comes through along each of at most [`PACKET`] rays that
-    /// go much the same way.
+    /// How much of a light's radiance comes through along each of any number of rays that go much the same way
+    /// as their neighbours.
     pub fn transmittance_packet(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance::<PACKET>(rays, through, |rays, occluded, leaf| self.bvh.any_packet(rays, occluded, leaf));
+        self.transmittance(rays, through, |rays, occluded, leaf| self.bvh.any_packet(rays, occluded, leaf));
     }
 
     /// How much of a light's radiance comes through along each of any number of rays.
     pub fn transmittance_batch(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance::<64>(rays, through, |rays, occluded, leaf| self.bvh.any_batch(rays, occluded, leaf));
+        self.transmittance(rays, through, |rays, occluded, leaf| self.bvh.any_batch(rays, occluded, leaf));
     }
 
-    /// Asks for `CHUNK` rays at a time.
-    fn transmittance<const CHUNK: usize>(
-        &self,
-        rays: &[Ray],
-        through: &mut [Rgb],
-        any: impl Fn(&[Ray], &mut [bool], &mut Nearest),
-    ) {
+    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], any: impl Fn(&[Ray], &mut [bool], &mut Nearest)) {
         if self.has_transparency {
             for (ray, through) in rays.iter().zip(through) {
                 *through = self.filtered(*ray);
             }
             return;
         }
+        const CHUNK: usize = 256;
         for (rays, through) in rays.chunks(CHUNK).zip(through.chunks_mut(CHUNK)) {
             let mut occluded = [false; CHUNK];
             let occluded = &mut occluded[..rays.len()];
