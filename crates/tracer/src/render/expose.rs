@@ -15,18 +15,33 @@ const LENS: u32 = 1;
 
 /// The rays of the samples `slots` of all samples of `work`, `samples` a pixel, pixel by pixel.
 pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+    if job.samples == 1 {
+        return expose_centers(job, work, slots, queue);
+    }
+    let mut places = [Vec2::ZERO; PLACES];
     let mut slot = 0;
     let mut at = slots.start;
     while at < slots.end {
         let pixel = at / samples;
-        let column = work.pixels.x + (pixel % u64::from(work.pixels.width)) as u32;
-        let row = work.pixels.y + (pixel / u64::from(work.pixels.width)) as u32;
-        let stream = Sampler::new(job.pattern, job.seed, UVec2::new(column, row));
-        let exposure = Pixel { job, center: Vec2::new(column as f32, row as f32) + 0.5, stream };
+        let exposure = Pixel::new(job, work, pixel);
         let count = (slots.end.min((pixel + 1) * samples) - at) as u32;
-        exposure.expose(work.samples.start + (at % samples) as u32, slot..slot + count, queue);
+        exposure.expose(work.samples.start + (at % samples) as u32, slot..slot + count, &mut places, queue);
         slot += count;
         at += u64::from(count);
+    }
+}
+
+/// One ray through the centre of each of the pixels `range`.
+fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) {
+    for start in range.clone().step_by(LANES) {
+        let count = LANES.min((range.end - start) as usize);
+        let pixels: [Pixel; LANES] = std::array::from_fn(|i| Pixel::new(job, work, start + i.min(count - 1) as u64));
+        let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
+        let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
+        job.camera.rays(&films, &lenses, count, &mut queue.rays);
+        let slot = (start - range.start) as u32;
+        let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
+        queue.paths.extend((0..).zip(&pixels).take(count).map(path));
     }
 }
 
@@ -37,16 +52,37 @@ struct Pixel<'j> {
     stream: Sampler,
 }
 
-impl Pixel<'_> {
-    /// The rays of the samples from `first` on.
-    fn expose(&self, first: u32, slots: Range<u32>, queue: &mut Queue) {
-        let mut places = [Vec2::splat(0.5); PLACES];
+impl<'j> Pixel<'j> {
+    /// Pixel number `index` of the work's rectangle, row by row.
+    fn new(job: &'j Job, work: &Work, index: u64) -> Self {
+        let width = u64::from(work.pixels.width);
+        let (column, row) = (work.pixels.x + (index % width) as u32, work.pixels.y + (index / width) as u32);
+        let stream = Sampler::new(job.pattern, job.seed, UVec2::new(column, row));
+        Self { job, center: Vec2::new(column as f32, row as f32) + 0.5, stream }
+    }
+
+    /// The numbers of a sample from `dimension` on.
+    fn sampler(&self, sample: u32, dimension: u32) -> Sampler {
+        let mut sampler = self.stream.sample(sample);
+        sampler.skip(dimension);
+        sampler
+    }
+
+    /// Where on the lens a sample begins.
+    fn lens(&self, sample: u32) -> Vec2 {
+        if self.job.camera.needs_lens() { self.sampler(sample, FILM).next_2d() } else { Vec2::splat(0.5) }
+    }
+
+    fn path(&self, sample: u32, slot: u32, weight: f32) -> Path {
+        Path { weight: Rgb::splat(weight), depth: 0, sampler: self.sampler(sample, FILM + LENS), slot }
+    }
+
+    /// The rays of the samples from `first` on; `places` is room to work in.
+    fn expose(&self, first: u32, slots: Range<u32>, places: &mut [Vec2; PLACES], queue: &mut Queue) {
         for start in slots.clone().step_by(PLACES) {
             let count = PLACES.min((slots.end - start) as usize);
             let first = first + (start - slots.start);
-            if self.job.samples > 1 {
-                self.stream.first_points(first, &mut places[..count.next_multiple_of(LANES)]);
-            }
+            self.stream.first_points(first, &mut places[..count.next_multiple_of(LANES)]);
             for (group, places) in places[..count].chunks(LANES).enumerate() {
                 let skipped = (group * LANES) as u32;
                 self.group(first + skipped, start + skipped, places, queue);
@@ -56,32 +92,17 @@ impl Pixel<'_> {
 
     /// The rays of up to eight samples.
     fn group(&self, first: u32, slot: u32, places: &[Vec2], queue: &mut Queue) {
-        let Job { camera, filter, samples, .. } = self.job;
+        let Job { camera, filter, .. } = self.job;
         let (mut films, mut weights) = ([[self.center.x; LANES], [self.center.y; LANES]], [1.0; LANES]);
-        if *samples > 1 {
-            for (i, place) in places.iter().enumerate() {
-                let sample = filter.sample(*place);
-                films[0][i] += sample.offset.x;
-                films[1][i] += sample.offset.y;
-                weights[i] = sample.weight;
-            }
+        for (i, place) in places.iter().enumerate() {
+            let sample = filter.sample(*place);
+            films[0][i] += sample.offset.x;
+            films[1][i] += sample.offset.y;
+            weights[i] = sample.weight;
         }
-        let sampler = |i: usize, dimension| {
-            let mut sampler = self.stream.sample(first + i as u32);
-            sampler.skip(dimension);
-            sampler
-        };
-        let mut lenses = [Vec2::splat(0.5); LANES];
-        if camera.needs_lens() {
-            lenses = std::array::from_fn(|i| sampler(i, FILM).next_2d());
-        }
+        let lenses = std::array::from_fn(|i| self.lens(first + i as u32));
         camera.rays(&films, &lenses, places.len(), &mut queue.rays);
-        let path = |(i, weight): (usize, &f32)| Path {
-            weight: Rgb::splat(*weight),
-            depth: 0,
-            sampler: sampler(i, FILM + LENS),
-            slot: slot + i as u32,
-        };
-        queue.paths.extend(weights.iter().take(places.len()).enumerate().map(path));
+        let path = |(i, weight): (u32, &f32)| self.path(first + i, slot + i, *weight);
+        queue.paths.extend((0..).zip(&weights).take(places.len()).map(path));
     }
 }
