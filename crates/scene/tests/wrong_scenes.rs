@@ -178,6 +178,16 @@ fn broken_and_odd_meshes() {
 }
 
 #[test]
+fn a_wrong_material_is_not_a_missing_one() {
+    let text = r##"{"version": 1,
+ "materials": {"red": {"phong": {"difuse": "#c02020"}}},
+ "groups": {"pair": [{"shape": {"sphere": {"radus": 1}}}]},
+ "objects": [{"shape": "sphere", "material": "red"}, {"group": "pair"}]}"##;
+    let printed = report(text, &[]);
+    assert!(printed.ends_with("2 errors") && !printed.contains("is called"), "{printed}");
+}
+
+#[test]
 fn ten_mistakes_are_ten_messages() {
     let text = r##"{
   "version": 1,

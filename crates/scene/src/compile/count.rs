@@ -67,10 +67,7 @@ impl<'s> Counter<'s> {
             self.findings.push(Finding::error(message).at(path));
             return 0;
         }
-        let Some(objects) = self.scene.groups.get(name) else {
-            self.findings.push(Finding::error(format!("no group is called `{name}`")).at(path));
-            return 0;
-        };
+        let Some(objects) = self.scene.groups.get(name) else { return 0 };
         self.open.push(name);
         let count = self.objects(objects, &Path::root().key("groups").key(name));
         self.open.pop();

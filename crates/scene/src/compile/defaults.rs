@@ -3,7 +3,7 @@
 use juggler_math::{Aabb, Rgb, UVec2, Vec3, fun};
 use juggler_tracer::background::{AnyBackground, Solid};
 use juggler_tracer::camera::{AnyCamera, Perspective};
-use juggler_tracer::light::{AnyLight, Point};
+use juggler_tracer::light::{Ambient, AnyLight, Extent, Point};
 
 /// Where the default camera stands, seen from the middle: in front, a little right of and above it.
 const TOWARDS_CAMERA: Vec3 = Vec3::new(0.35, 0.35, 1.0);
@@ -22,17 +22,18 @@ pub fn camera(bounds: &Aabb, size: UVec2) -> AnyCamera {
     Perspective { eye, look_at: center.into(), ..Perspective::default() }.into()
 }
 
-/// A light above the camera's shoulder.
+/// A soft light above the camera's shoulder, and a little light from everywhere.
 pub fn lights(bounds: &Aabb) -> Vec<AnyLight> {
     let (center, radius) = ball(bounds);
     let distance = radius * 4.0;
     let key = Point {
         position: center + TOWARDS_LIGHT.normalize() * distance,
         color: Rgb::WHITE,
-        intensity: 3.0 * distance * distance,
+        intensity: 0.6 * distance * distance,
+        extent: Some(Extent::Sphere { radius: 0.5 * radius }),
         ..Point::default()
     };
-    vec![key.into()]
+    vec![key.into(), Ambient { intensity: 0.15, ..Ambient::default() }.into()]
 }
 
 /// Black where the scene has its own light, else a soft grey.

@@ -40,7 +40,7 @@ impl Materials {
             MaterialRef::Name(_) => self.compiler.material("", material),
         };
         compiled.unwrap_or_else(|error| {
-            findings.push(finding(&error, &path.into()));
+            findings.extend(finding(&error, &path.into()));
             self.plain()
         })
     }
@@ -63,15 +63,17 @@ impl Materials {
     pub fn finish(self, findings: &mut Vec<Finding>) -> MaterialTable {
         self.compiler.finish().unwrap_or_else(|errors| {
             for (name, error) in errors {
-                findings.push(finding(&error, &Path::root().key("materials").key(name)));
+                findings.extend(finding(&error, &Path::root().key("materials").key(name)));
             }
             MaterialTable::default()
         })
     }
 }
 
-fn finding(error: &MaterialError, path: &Path) -> Finding {
-    Finding::error(error.to_string()).at(path.join(&error.path()))
+/// What to say of an error. Names are looked up in the whole scene before (`validate::names`): one that is unknown
+/// here belongs to something that has been complained about already.
+fn finding(error: &MaterialError, path: &Path) -> Option<Finding> {
+    (!error.is_unknown_name()).then(|| Finding::error(error.to_string()).at(path.join(&error.path())))
 }
 
 fn glows(material: &AnyMaterial) -> bool {

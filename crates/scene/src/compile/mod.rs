@@ -105,14 +105,10 @@ fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> V
     if cameras.is_empty() {
         cameras.push(("default".into(), defaults::camera(bounds, size)));
     }
-    if let Some(chosen) = &scene.render.camera {
-        match cameras.iter().position(|(name, _)| *name == chosen.0) {
-            Some(at) => cameras[..=at].rotate_right(1),
-            None => {
-                let problem = Finding::error(format!("no camera is called `{}`", chosen.0));
-                findings.push(problem.at(Path::root().key("render").key("camera")));
-            }
-        }
+    if let Some(chosen) = &scene.render.camera
+        && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
+    {
+        cameras[..=at].rotate_right(1);
     }
     cameras
 }

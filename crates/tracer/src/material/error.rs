@@ -61,6 +61,15 @@ impl MaterialError {
         }
     }
 
+    /// Whether all that is wrong is a name that the scene has not.
+    pub fn is_unknown_name(&self) -> bool {
+        match self {
+            Self::UnknownTexture(_) | Self::UnknownMaterial { .. } => true,
+            Self::Within { error, .. } => error.is_unknown_name(),
+            Self::Cycle { .. } | Self::TooDeep | Self::Invalid { .. } => false,
+        }
+    }
+
     pub(super) fn within(self, field: &'static str) -> Self {
         Self::Within { field, error: Box::new(self) }
     }

@@ -35,7 +35,7 @@ pub use data::MeshData;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mesh {
-    /// A model file (PLY, OBJ, STL, glTF), relative to the scene file, instead of the arrays below.
+    /// A model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays below.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Corner positions in scene units.
