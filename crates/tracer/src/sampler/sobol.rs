@@ -28,9 +28,11 @@ pub fn point(index: u32, seed: u32) -> Vec2 {
     let index = permute(index.reverse_bits(), seed).reverse_bits();
     // The bits of Sobol's first dimension are those of the index reversed, and scrambling works on the
     // reversed bits again: the two reversals cancel.
-    let x = permute(index, seed ^ 0x9c8f_2d35).reverse_bits();
-    let y = permute(second_dimension(index), hash::mix(seed)).reverse_bits();
-    Vec2::new(hash::unit_f32(x), hash::unit_f32(y))
+    let x = permute(index, seed ^ 0x9c8f_2d35);
+    let y = permute(second_dimension(index), hash::mix(seed));
+    // Both are reversed in one go, which also exchanges them.
+    let both = (u64::from(y) << 32 | u64::from(x)).reverse_bits();
+    Vec2::new(hash::unit_f32((both >> 32) as u32), hash::unit_f32(both as u32))
 }
 
 /// Sobol's second dimension, bits reversed: its matrix is Pascal's triangle modulo 2, whose entry (i, j)

@@ -4,7 +4,7 @@ use super::Object;
 use crate::material::MaterialTable;
 use crate::shape::{AnyShape, Hit, intersect_sphere, sphere_surface};
 use crate::surface::Surface;
-use juggler_math::{Ray, Vec3};
+use juggler_math::{Ray, Transform, Vec3};
 
 /// An object with what is worked out once.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub struct Placed {
     sphere: Option<(Vec3, f32)>,
     /// The material is the same everywhere: nobody asks for surface coordinates.
     plain: bool,
+    /// Object space is world space, as for most grounds.
+    unmoved: bool,
 }
 
 impl Placed {
@@ -23,7 +25,8 @@ impl Placed {
             _ => None,
         };
         let plain = !materials.is_textured(object.material);
-        Self { object, sphere, plain }
+        let unmoved = object.transform == Transform::IDENTITY;
+        Self { object, sphere, plain, unmoved }
     }
 
     /// The nearest hit in the ray's range.
@@ -31,6 +34,7 @@ impl Placed {
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         match self.sphere {
             Some((center, radius)) => intersect_sphere(center, radius, ray),
+            None if self.unmoved => self.object.shape.intersect(ray),
             None => self.object.shape.intersect(&self.object.transform.ray_to_local(ray)),
         }
     }
@@ -40,6 +44,7 @@ impl Placed {
     pub fn occludes(&self, ray: &Ray) -> bool {
         match self.sphere {
             Some((center, radius)) => intersect_sphere(center, radius, ray).is_some(),
+            None if self.unmoved => self.object.shape.occludes(ray),
             None => self.object.shape.occludes(&self.object.transform.ray_to_local(ray)),
         }
     }
@@ -49,6 +54,7 @@ impl Placed {
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         match self.sphere {
             Some((center, radius)) if self.plain => sphere_surface(center, radius, ray, hit),
+            None if self.unmoved => self.object.shape.surface(ray, hit),
             _ => {
                 let transform = &self.object.transform;
                 self.object.shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
