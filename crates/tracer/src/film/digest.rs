@@ -2,6 +2,9 @@
 
 use juggler_math::Rgb;
 
+/// Pixels that are hashed at once: enough for the hash to work on several parts of them side by side.
+const PIECE: usize = 1 << 14;
+
 /// Takes in the pixels of a film, row by row from the top.
 #[derive(Clone)]
 pub struct Digest {
@@ -30,14 +33,16 @@ impl Digest {
 
     /// The next pixels.
     pub fn update(&mut self, pixels: &[Rgb]) {
-        for chunk in pixels.chunks(1024) {
-            let bytes: Vec<u8> = chunk.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
-            self.hasher.update(&bytes);
-        }
-        for pixel in pixels {
-            for (sum, channel) in self.sum.iter_mut().zip(pixel.to_array()) {
-                *sum += f64::from(channel);
+        let mut bytes = Vec::with_capacity(PIECE.min(pixels.len()) * size_of::<Rgb>());
+        for piece in pixels.chunks(PIECE) {
+            bytes.clear();
+            for pixel in piece {
+                for (sum, channel) in self.sum.iter_mut().zip(pixel.to_array()) {
+                    *sum += f64::from(channel);
+                    bytes.extend_from_slice(&channel.to_le_bytes());
+                }
             }
+            self.hasher.update(&bytes);
         }
         self.pixels += pixels.len() as u64;
     }
