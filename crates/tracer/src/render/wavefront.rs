@@ -157,14 +157,18 @@ impl<'j> Engine<'j> {
         if self.harvest.next.len() == 0 {
             return;
         }
-        let next = std::mem::replace(&mut self.harvest.next, self.spare.pop().unwrap_or_default());
-        for range in cut(&next).into_iter().rev() {
+        let mut next = std::mem::replace(&mut self.harvest.next, self.spare.pop().unwrap_or_default());
+        let segments = cut(&next);
+        if segments.len() == 1 {
+            self.stack.push(next);
+            return;
+        }
+        for range in segments.into_iter().rev() {
             let mut queue = self.spare.pop().unwrap_or_default();
             queue.rays.extend_from_slice(&next.rays[range.clone()]);
             queue.paths.extend_from_slice(&next.paths[range]);
             self.stack.push(queue);
         }
-        let mut next = next;
         next.clear();
         self.spare.push(next);
     }
