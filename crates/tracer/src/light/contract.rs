@@ -27,6 +27,10 @@ fn samples_are_finite_and_unit_wherever_they_are_asked() {
                 let Some(sample) = light.sample(from, random.vec2()) else { continue };
                 assert!(close(sample.wi.length(), 1.0, 1e-6), "{light:?} {from} {sample:?}");
                 assert!(sample.radiance.is_finite() && !sample.radiance.is_black() && sample.distance > 0.0);
+                if let Some((centre, radius)) = light.ball().filter(|_| size <= 300.0) {
+                    let off = (place(from, &sample) - centre).length();
+                    assert!(off <= radius + 1e-5 * (size + 1000.0), "{light:?}: {off} from its centre");
+                }
             }
         }
     }

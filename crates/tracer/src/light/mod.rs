@@ -49,6 +49,10 @@ pub trait Light: Send + Sync {
     }
     /// Whether it shines from a single place or direction, so that [`Light::sample`] asks nothing of `u`.
     fn is_point(&self) -> bool;
+    /// Centre and radius of a ball that holds all places it shines from; `None` for one without a place.
+    fn ball(&self) -> Option<(Vec3, f32)> {
+        None
+    }
     /// Light that is everywhere, from nowhere.
     fn ambient(&self) -> Rgb {
         Rgb::BLACK

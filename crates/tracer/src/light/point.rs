@@ -67,6 +67,10 @@ impl Light for Point {
         self.extent.is_none()
     }
 
+    fn ball(&self) -> Option<(Vec3, f32)> {
+        Some((self.position, self.extent.map_or(0.0, Extent::radius)))
+    }
+
     fn power(&self, world_radius: f32) -> f32 {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
         4.0 * std::f32::consts::PI * at_radius * (self.color * self.intensity).luminance()

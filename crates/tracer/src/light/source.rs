@@ -44,6 +44,16 @@ pub enum Extent {
     },
 }
 
+impl Extent {
+    /// Radius of the ball that holds it, whichever way it faces.
+    pub(super) fn radius(self) -> f32 {
+        match self {
+            Self::Sphere { radius } => radius,
+            Self::Square { side } => side * std::f32::consts::FRAC_1_SQRT_2,
+        }
+    }
+}
+
 impl Default for Attenuation {
     fn default() -> Self {
         Self { constant: 0.0, linear: 0.0, quadratic: 1.0 }

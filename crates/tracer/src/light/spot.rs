@@ -109,6 +109,10 @@ impl Light for Spot {
         self.extent.is_none()
     }
 
+    fn ball(&self) -> Option<(Vec3, f32)> {
+        Some((self.position, self.extent.map_or(0.0, Extent::radius)))
+    }
+
     fn power(&self, world_radius: f32) -> f32 {
         const STEPS: u16 = 512;
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;

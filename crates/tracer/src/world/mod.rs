@@ -7,7 +7,7 @@ use crate::material::{MaterialId, MaterialTable};
 use crate::shape::{AnyShape, Hit};
 use crate::surface::Surface;
 use juggler_bvh::{Bvh, Quality};
-use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2};
+use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 
 mod items;
@@ -67,6 +67,8 @@ pub struct Lamp {
     pub samples: u32,
     /// [`Light::is_point`](crate::light::Light::is_point).
     pub is_point: bool,
+    /// [`Light::ball`](crate::light::Light::ball).
+    ball: Option<(Vec3, f32)>,
 }
 
 /// Counts for reports.
@@ -101,8 +103,14 @@ pub struct World {
 
 impl Lamp {
     fn new(light: AnyLight) -> Self {
-        let (samples, is_point) = (light.shadow_samples().max(1), light.is_point());
-        Self { light, samples, is_point }
+        let (samples, is_point, ball) = (light.shadow_samples().max(1), light.is_point(), light.ball());
+        Self { light, samples, is_point, ball }
+    }
+
+    /// Whether all of it lies below the plane through `point`: it cannot light what faces along `normal` there.
+    #[inline]
+    pub fn is_below(&self, point: Vec3, normal: Vec3) -> bool {
+        self.ball.is_some_and(|(centre, radius)| (centre - point).dot(normal) < -radius)
     }
 }
 

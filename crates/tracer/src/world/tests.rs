@@ -4,7 +4,6 @@ use super::*;
 use crate::background::Solid;
 use crate::material::{MaterialCompiler, MaterialRef, Resolver};
 use crate::texture::TextureTable;
-use juggler_math::Vec3;
 use juggler_math::testing::Random;
 
 /// Every kind of shape, each several times, turned, sheared and moved.
