@@ -39,8 +39,9 @@ impl Digest {
             for pixel in piece {
                 for (sum, channel) in self.sum.iter_mut().zip(pixel.to_array()) {
                     *sum += f64::from(channel);
-                    bytes.extend_from_slice(&channel.to_le_bytes());
                 }
+                let [[a, b, c, d], [e, f, g, h], [i, j, k, l]] = pixel.to_array().map(f32::to_le_bytes);
+                bytes.extend_from_slice(&[a, b, c, d, e, f, g, h, i, j, k, l]);
             }
             self.hasher.update(&bytes);
         }

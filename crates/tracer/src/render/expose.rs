@@ -23,7 +23,7 @@ pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &m
     let mut at = slots.start;
     while at < slots.end {
         let pixel = at / samples;
-        let exposure = Pixel::new(job, work, pixel);
+        let exposure = Pixel::new(job, work, Pixel::place(work, pixel));
         let count = (slots.end.min((pixel + 1) * samples) - at) as u32;
         exposure.expose(work.samples.start + (at % samples) as u32, slot..slot + count, &mut places, queue);
         slot += count;
@@ -33,9 +33,18 @@ pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &m
 
 /// One ray through the centre of each of the pixels `range`.
 fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) {
+    let mut next = Pixel::place(work, range.start);
     for start in range.clone().step_by(LANES) {
         let count = LANES.min((range.end - start) as usize);
-        let pixels: [Pixel; LANES] = std::array::from_fn(|i| Pixel::new(job, work, start + i.min(count - 1) as u64));
+        // Lanes beyond the last pixel hold places that nobody asks for.
+        let pixels: [Pixel; LANES] = std::array::from_fn(|_| {
+            let place = next;
+            next.x += 1;
+            if next.x == work.pixels.width {
+                next = UVec2::new(0, next.y + 1);
+            }
+            Pixel::new(job, work, place)
+        });
         let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
         let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
         job.camera.rays(&films, &lenses, count, &mut queue.rays);
@@ -53,12 +62,17 @@ struct Pixel<'j> {
 }
 
 impl<'j> Pixel<'j> {
-    /// Pixel number `index` of the work's rectangle, row by row.
-    fn new(job: &'j Job, work: &Work, index: u64) -> Self {
+    /// Column and row in the work's rectangle of its pixel number `index`, counted row by row.
+    fn place(work: &Work, index: u64) -> UVec2 {
         let width = u64::from(work.pixels.width);
-        let (column, row) = (work.pixels.x + (index % width) as u32, work.pixels.y + (index / width) as u32);
-        let stream = Sampler::new(job.pattern, job.seed, UVec2::new(column, row));
-        Self { job, center: Vec2::new(column as f32, row as f32) + 0.5, stream }
+        UVec2::new((index % width) as u32, (index / width) as u32)
+    }
+
+    /// The pixel at this place in the work's rectangle.
+    fn new(job: &'j Job, work: &Work, place: UVec2) -> Self {
+        let pixel = UVec2::new(work.pixels.x, work.pixels.y).wrapping_add(place);
+        let stream = Sampler::new(job.pattern, job.seed, pixel);
+        Self { job, center: pixel.as_vec2() + 0.5, stream }
     }
 
     /// The numbers of a sample from `dimension` on.
