@@ -105,3 +105,16 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SIZE", value_parser = value::memory, help_heading = "Machine")]
     pub max_memory: Option<u64>,
 }
+
+#[cfg(test)]
+impl RenderArgs {
+    /// As `juggler render` reads these words.
+    pub fn of<'w>(words: impl IntoIterator<Item = &'w str>) -> Result<Self, clap::Error> {
+        #[derive(Parser)]
+        struct Line {
+            #[command(flatten)]
+            render: RenderArgs,
+        }
+        Line::try_parse_from(["render"].into_iter().chain(words)).map(|line| line.render)
+    }
+}

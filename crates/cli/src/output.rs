@@ -1,10 +1,21 @@
-//! Names of output files: standard output, numbered frames.
+//! Where results go: standard output, files, numbered frames.
 
+use crate::console;
 use crate::failure::Failure;
+use juggler::imaging::atomic;
 use std::path::Path;
 
 /// The name that means standard output.
 pub const STANDARD_OUTPUT: &str = "-";
+
+/// Writes a text and a line break to a file, which it replaces when complete, or to standard output.
+pub fn write_text(output: &str, text: &str) -> Result<(), Failure> {
+    if output == STANDARD_OUTPUT {
+        return console::print(text);
+    }
+    atomic::write(Path::new(output), format!("{text}\n").as_bytes())
+        .map_err(|error| Failure::file("write", output, &error))
+}
 
 /// The name of a frame's file: a row of `#` becomes the number, filled with zeros; without one, the number
 /// comes before the ending, after an underscore, in four digits.

@@ -191,16 +191,9 @@ fn set_bits(options: &mut Options, format: Format, bits: u8) -> Result<(), Failu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        render: RenderArgs,
-    }
 
     fn plan(line: &str) -> Result<Plan, Failure> {
-        Plan::new(Line::try_parse_from(["render"].into_iter().chain(line.split(' '))).unwrap().render)
+        Plan::new(RenderArgs::of(line.split(' ')).unwrap())
     }
 
     fn refused(line: &str) -> String {
@@ -259,7 +252,7 @@ mod tests {
     fn flags_that_exclude_each_other() {
         for line in ["a --frame 1 --at 2", "a --frame 1 --frames 1..2", "a --frames 1..2 --at 1", "a -q --progress bar"]
         {
-            assert!(Line::try_parse_from(["render"].into_iter().chain(line.split(' '))).is_err(), "{line}");
+            assert!(RenderArgs::of(line.split(' ')).is_err(), "{line}");
         }
     }
 }

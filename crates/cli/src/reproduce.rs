@@ -54,17 +54,9 @@ fn quoted(word: &str) -> String {
 mod tests {
     use super::*;
     use crate::args::RenderArgs;
-    use clap::Parser;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        render: RenderArgs,
-    }
 
     fn commands(words: &[&str]) -> Vec<String> {
-        let line = Line::try_parse_from(["render"].iter().chain(words)).unwrap();
-        let plan = Plan::new(line.render).unwrap();
+        let plan = Plan::new(RenderArgs::of(words.iter().copied()).unwrap()).unwrap();
         plan.shots(30, 24.0).unwrap().iter().map(|shot| command(&plan, shot)).collect()
     }
 

@@ -2,10 +2,10 @@
 
 use crate::console;
 use crate::failure::Failure;
-use crate::output::STANDARD_OUTPUT;
+use crate::output::{self, STANDARD_OUTPUT};
 use crate::value;
 use clap::Args;
-use juggler::imaging::{self, Difference, atomic};
+use juggler::imaging::{self, Difference};
 use serde_json::json;
 use std::path::Path;
 
@@ -33,15 +33,11 @@ impl Compare {
             Some(most) => difference.rmse <= most,
             None => difference.same_bits,
         };
-        match self.stats.as_deref() {
-            Some(STANDARD_OUTPUT) => console::print(&to_json(&difference, equal))?,
-            Some(file) => {
-                let text = format!("{}\n", to_json(&difference, equal));
-                let written = atomic::write(Path::new(file), text.as_bytes());
-                written.map_err(|error| Failure::file("write", file, &error))?;
-                console::print(&to_words(&difference, equal))?;
-            }
-            None => console::print(&to_words(&difference, equal))?,
+        if let Some(file) = &self.stats {
+            output::write_text(file, &to_json(&difference, equal))?;
+        }
+        if self.stats.as_deref() != Some(STANDARD_OUTPUT) {
+            console::print(&to_words(&difference, equal))?;
         }
         if equal { Ok(()) } else { Err(Failure::No) }
     }

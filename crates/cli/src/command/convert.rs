@@ -1,12 +1,9 @@
 //! `juggler convert`: any readable scene as scene JSON, expressions resolved.
 
-use crate::console;
 use crate::failure::Failure;
-use crate::output::STANDARD_OUTPUT;
+use crate::output;
 use crate::source;
 use clap::Args;
-use juggler::imaging::atomic;
-use std::path::Path;
 
 /// Flags of `juggler convert`.
 #[derive(Debug, Args)]
@@ -24,11 +21,6 @@ impl Convert {
     /// Writes the scene.
     pub fn run(self) -> Result<(), Failure> {
         let scene = source::load(&self.scene)?.at_frame(f64::from(self.frame))?;
-        let json = scene.to_json();
-        if self.output == STANDARD_OUTPUT {
-            return console::print(&json);
-        }
-        let written = atomic::write(Path::new(&self.output), format!("{json}\n").as_bytes());
-        written.map_err(|error| Failure::file("write", &self.output, &error))
+        output::write_text(&self.output, &scene.to_json())
     }
 }

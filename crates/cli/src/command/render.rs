@@ -5,13 +5,13 @@ use crate::console;
 use crate::failure::Failure;
 use crate::format::{amount, bytes, counted, duration};
 use crate::interrupt::Interrupts;
-use crate::output::STANDARD_OUTPUT;
+use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::{Plan, Shot};
 use crate::progress::{Reporter, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
-use juggler::imaging::{self, Header, RowWriter, atomic};
+use juggler::imaging::{self, Header, RowWriter};
 use juggler::scene::Scene;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
@@ -158,7 +158,7 @@ impl Session {
         self.reporter.done(&shot.output, seconds.total, outcome.rays.total(), &outcome.film.hash);
         if let Some(file) = &shot.stats {
             let json = Stats::new(&self.plan.scene, picture, self.plan.threads, seconds, outcome).to_json();
-            write_stats(file, &json)?;
+            output::write_text(file, &json)?;
         }
         let lost = outcome.rays.not_finite;
         if lost > 0 {
@@ -183,11 +183,4 @@ impl Session {
         }
         console::print(line)
     }
-}
-
-fn write_stats(file: &str, json: &str) -> Result<(), Failure> {
-    if file == STANDARD_OUTPUT {
-        return console::print(json);
-    }
-    atomic::write(Path::new(file), format!("{json}\n").as_bytes()).map_err(|error| Failure::file("write", file, &error))
 }

@@ -2,11 +2,11 @@
 
 use super::names::Family;
 use super::rule::{Rule, Way};
-use super::scalar::is_hex_color;
 use super::{Walk, words};
 use crate::document::{Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
+use juggler_math::Rgb;
 use serde_json::Value;
 
 impl Walk<'_> {
@@ -50,7 +50,7 @@ fn fits(node: &Node, rule: &Rule) -> bool {
 fn way_of_text<'w>(text: &str, ways: &'w [Way]) -> Option<&'w Way> {
     let is_text = |way: &&Way| way.rule.types.string && !way.rule.color;
     let color = ways.iter().find(|way| way.rule.color);
-    if is_hex_color(text) || text.starts_with('#') && color.is_some() {
+    if Rgb::from_hex(text).is_some() || text.starts_with('#') && color.is_some() {
         return color.or_else(|| ways.iter().find(is_text));
     }
     ways.iter().find(is_text).or_else(|| ways.iter().find(|way| way.rule.is_family())).or(color)

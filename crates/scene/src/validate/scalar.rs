@@ -6,6 +6,7 @@ use super::rule::Rule;
 use crate::document::Node;
 use crate::path::Trail;
 use crate::report::Finding;
+use juggler_math::Rgb;
 use serde_json::{Number, Value};
 
 impl Walk<'_> {
@@ -65,15 +66,10 @@ impl Walk<'_> {
         if let Some(family) = family {
             self.refer(family, node, text, at);
         }
-        if rule.color && !is_hex_color(text) {
+        if rule.color && Rgb::from_hex(text).is_none() {
             let help = "a colour is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f";
             return self.report(node, at, Finding::error(format!("`{text}` is not a colour")).help(help));
         }
         Some(text.into())
     }
-}
-
-/// The one pattern that the format has.
-pub fn is_hex_color(text: &str) -> bool {
-    text.strip_prefix('#').is_some_and(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
 }
