@@ -2,7 +2,9 @@
 
 use crate::node::Child;
 use crate::slabs::{Slabs, cull_distance};
-use crate::stack::{LARGE, Stack};
+use crate::stack::{Stack, distance, entry};
+use crate::lanes::Bits;
+use fearless_simd::{Level, dispatch};
 use crate::{Bvh, Leaf};
 use juggler_math::Ray;
 
@@ -21,12 +23,12 @@ impl Bvh {
     /// [`Bvh::closest`], step by step the same, with everything counted. Slower.
     pub fn closest_counted(&self, ray: &mut Ray, leaf: &mut impl Leaf) -> Visits {
         let mut visits = Visits::default();
-        let mut slabs = Slabs::of_ray(ray);
-        let mut stack = Stack::<LARGE>::new();
-        stack.push(ray.t_min, Child::ROOT.0);
-        while let Some((enter, word)) = stack.pop() {
-            let child = Child(word);
-            if enter > slabs.t_max {
+        let mut slabs = dispatch!(Level::baseline(), simd => Slabs::of_ray(simd, ray));
+        let mut stack = Stack::new();
+        stack.push(entry(ray.t_min, Child::ROOT.0));
+        while let Some(top) = stack.pop() {
+            let child = Child(top as u32);
+            if distance(top) > slabs.t_max {
                 continue;
             }
             if child.is_leaf() {
@@ -36,7 +38,15 @@ impl Bvh {
                 slabs.t_max = cull_distance(ray.t_max);
             } else {
                 visits.nodes += 1;
-                self.push_hits(child, &slabs, &mut stack);
+                let node = &self.nodes[child.0 as usize];
+                let (mask, enter) = dispatch!(Level::baseline(), simd => {
+                    let (mask, enter) = node.test(simd, &slabs);
+                    (mask, <[f32; 8]>::from(enter))
+                });
+                let base = stack.len();
+                for slot in Bits(mask) {
+                    stack.insert(base, entry(enter[slot], node.children[slot].0));
+                }
             }
         }
         visits

@@ -54,6 +54,7 @@ pub use packet::PACKET;
 pub use triangle::intersect_triangle;
 pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
 
+use fearless_simd::Level;
 use juggler_math::{Aabb, Ray};
 use node::Node;
 use std::ops::Range;
@@ -66,6 +67,22 @@ pub struct Bvh {
     order: Vec<u32>,
     bounds: Aabb,
     stats: BuildStats,
+    /// The vector unit that the kernels use.
+    level: Level,
+}
+
+/// Every kind of vector unit that this machine has and the kernels are made for, the best last.
+pub(crate) fn levels() -> Vec<Level> {
+    let best = Level::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    let lesser = [
+        best.as_sse2().map(Level::Sse2),
+        best.as_sse4_2().map(Level::Sse4_2),
+        best.as_avx2().map(Level::Avx2),
+    ];
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    let lesser = [Some(Level::baseline())];
+    lesser.into_iter().flatten().chain([best]).collect()
 }
 
 /// What happens at the leaves: the owner of the items tests them.
@@ -76,6 +93,9 @@ pub trait Leaf {
     /// A leaf is shown whenever its box is entered at or before `t_max`, so that of hits at equal distance
     /// the implementor can keep the one with the smallest item number, whatever the order of the visits.
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>);
+
+    /// Brings what [`Leaf::closest`] and [`Leaf::any`] will look at closer, where the implementor can.
+    fn prefetch(&self, _items: Range<u32>) {}
 
     /// Whether one of the items is hit between `ray.t_min` and `ray.t_max`.
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool;

@@ -1,10 +1,12 @@
 //! The node: eight child boxes side by side, and what each child is.
 //!
 //! 256 bytes in four cache lines: three axes of (eight minima, eight maxima), then eight child words. All
-//! eight boxes are tested together; the loops over `[f32; 8]` are written so that they become vector code.
+//! eight boxes are tested together.
 
-use crate::lanes::{less_or_equal, max, min};
-use crate::slabs::Slabs;
+use crate::lanes::{Lanes, bits};
+use crate::slabs::{Bundle, Slabs};
+use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
 use juggler_math::Aabb;
 use std::ops::Range;
 
@@ -80,28 +82,47 @@ impl Node {
 
     /// Which boxes are met (bit per slot), and where each is entered.
     #[inline(always)]
-    pub fn test(&self, slabs: &Slabs) -> (u32, [f32; WIDTH]) {
-        let mut enter = [slabs.t_min; WIDTH];
-        let mut leave = [slabs.t_max; WIDTH];
+    pub fn test<S: Lanes>(&self, simd: S, slabs: &Slabs) -> (u32, f32x8<S>) {
+        let mut enter = simd.splat(slabs.t_min);
+        let mut leave = simd.splat(slabs.t_max);
         for axis in 0..3 {
-            let side = slabs.side[axis];
-            let near = &self.bounds[axis][side & 1];
-            let far = &self.bounds[axis][(side & 1) ^ 1];
-            for i in 0..WIDTH {
-                let n = (near[i] - slabs.near_origin[axis]) * slabs.near_inverse[axis];
-                let f = (far[i] - slabs.far_origin[axis]) * slabs.far_inverse[axis];
-                // Written so that a NaN leaves the range as it is.
-                enter[i] = max(n, enter[i]);
-                leave[i] = min(f, leave[i]);
-            }
+            let (near, far) = self.planes(simd, axis, (slabs.signs >> axis) as usize);
+            let near = near.mul_add(simd.splat(slabs.inverse[axis]), simd.splat(slabs.near_offset[axis]));
+            let far = far.mul_add(simd.splat(slabs.far_inverse[axis]), simd.splat(slabs.far_offset[axis]));
+            enter = simd.most(near, enter);
+            leave = simd.least(far, leave);
         }
-        (less_or_equal(&enter, &leave), enter)
+        (bits(enter.simd_le(leave)), enter)
+    }
+
+    /// Which boxes any ray of a bundle may meet (bit per slot), and where the first could enter.
+    #[inline(always)]
+    pub fn test_bundle<S: Lanes>(&self, simd: S, bundle: &Bundle) -> (u32, f32x8<S>) {
+        let mut enter = simd.splat(bundle.t_min);
+        let mut leave = simd.splat(bundle.t_max);
+        for axis in 0..3 {
+            let (near, far) = self.planes(simd, axis, bundle.side[axis]);
+            let near = (near - bundle.near_origin[axis]) * bundle.near_inverse[axis];
+            let far = (far - bundle.far_origin[axis]) * bundle.far_inverse[axis];
+            // In this order, so that a NaN leaves the range as it is.
+            enter = simd.most(near, enter);
+            leave = simd.least(far, leave);
+        }
+        (bits(enter.simd_le(leave)), enter)
+    }
+
+    /// Near and far planes along an axis.
+    #[inline(always)]
+    fn planes<S: Lanes>(&self, simd: S, axis: usize, side: usize) -> (f32x8<S>, f32x8<S>) {
+        let planes = &self.bounds[axis];
+        (simd.load(&planes[side & 1]), simd.load(&planes[side & 1 ^ 1]))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::dispatch;
     use juggler_math::{Ray, Vec3};
 
     #[test]
@@ -124,7 +145,11 @@ mod tests {
         let mut node = Node::EMPTY;
         node.add(&Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE }, Child::leaf(0, 1));
         for direction in [Vec3::X, -Vec3::X, Vec3::new(-0.0, 1.0, 0.0), Vec3::ONE, Vec3::new(1e-40, 1.0, 0.0)] {
-            assert_eq!(node.test(&Slabs::of_ray(&Ray::new(Vec3::ZERO, direction))).0, 1, "{direction}");
+            let slabs = Slabs::of_ray(&Ray::new(Vec3::ZERO, direction));
+            for level in crate::levels() {
+                let mask = dispatch!(level, simd => node.test(simd, &slabs).0);
+                assert_eq!(mask, 1, "{direction} {level:?}");
+            }
         }
     }
 }

@@ -1,9 +1,11 @@
 //! One ray at a time: nearest child first for the closest hit, any order for any hit.
 
-use crate::node::Child;
+use crate::lanes::{Bits, Lanes, prefetch};
+use crate::node::{Child, Node};
 use crate::slabs::{Slabs, cull_distance};
-use crate::stack::{LARGE, MEDIUM, SMALL, Stack};
+use crate::stack::{Stack, distance, entry};
 use crate::{Bvh, Leaf};
+use fearless_simd::dispatch;
 use juggler_math::Ray;
 
 impl Bvh {
@@ -21,112 +23,179 @@ impl Bvh {
 
     /// [`Bvh::closest`] for any number of unrelated rays; a ray's lane is its number in the slice.
     pub fn closest_batch(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
-        match self.stats.stack {
-            need if need <= SMALL => self.closest_each::<SMALL>(rays, leaf),
-            need if need <= MEDIUM => self.closest_each::<MEDIUM>(rays, leaf),
-            _ => self.closest_each::<LARGE>(rays, leaf),
-        }
+        dispatch!(self.level, simd => self.closest_each(simd, rays, leaf));
     }
 
     /// [`Bvh::any`] for any number of unrelated rays; a ray's lane is its number in the slice. The answers
     /// replace what `occluded` held; rays without a place in it are not traced.
     pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
-        match self.stats.stack {
-            need if need <= SMALL => self.any_each::<SMALL>(rays, occluded, leaf),
-            need if need <= MEDIUM => self.any_each::<MEDIUM>(rays, occluded, leaf),
-            _ => self.any_each::<LARGE>(rays, occluded, leaf),
-        }
+        dispatch!(self.level, simd => self.any_each(simd, rays, occluded, leaf));
     }
 
-    fn closest_each<const SIZE: usize>(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
-        let mut stack = Stack::<SIZE>::new();
+    #[inline(always)]
+    fn closest_each<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
+        let mut stack = Stack::new();
         for (lane, ray) in rays.iter_mut().enumerate() {
-            self.closest_below(Child::ROOT, &mut stack, lane, ray, leaf);
+            self.closest_below(simd, Child::ROOT, &mut stack, lane, ray, Slabs::of_ray(simd, ray), leaf);
         }
     }
 
-    fn any_each<const SIZE: usize>(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
-        let mut stack = Stack::<SIZE>::new();
+    #[inline(always)]
+    fn any_each<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
+        let mut stack = Stack::new();
         for (lane, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-            *occluded = self.any_below(Child::ROOT, &mut stack, lane, ray, leaf);
+            *occluded = self.any_below(simd, Child::ROOT, &mut stack, lane, ray, &Slabs::of_ray(simd, ray), leaf);
         }
     }
 
     /// Traces one ray through the subtree at `from`; what the stack holds already is left alone.
-    pub(crate) fn closest_below<const SIZE: usize>(
+    #[inline(always)]
+    pub(crate) fn closest_below<S: Lanes>(
         &self,
+        simd: S,
         from: Child,
-        stack: &mut Stack<SIZE>,
+        stack: &mut Stack,
         lane: usize,
         ray: &mut Ray,
+        mut slabs: Slabs,
         leaf: &mut impl Leaf,
     ) {
-        let mut slabs = Slabs::of_ray(ray);
-        let base = stack.len();
+        let (nodes, base) = (self.nodes.as_slice(), stack.len());
         let mut current = from;
         loop {
-            if current.is_leaf() {
+            let next = if current.is_leaf() {
                 leaf.closest(lane, ray, current.items());
                 slabs.t_max = cull_distance(ray.t_max);
+                None
             } else {
-                self.push_hits(current, &slabs, stack);
-            }
-            current = loop {
-                if stack.len() == base {
-                    return;
-                }
-                match stack.pop() {
-                    Some((enter, word)) if enter <= slabs.t_max => break Child(word),
-                    Some(_) => {}
+                let node = &nodes[current.0 as usize];
+                let (mask, enter) = node.test(simd, &slabs);
+                //PF self.prefetch(node, mask, leaf);
+                nearest(node, mask, &enter.into(), stack)
+            };
+            current = match next {
+                Some(child) => child,
+                None => match next_below(stack, base, slabs.t_max) {
+                    Some(child) => child,
                     None => return,
-                }
+                },
             };
         }
     }
 
-    /// Pushes the children that are met, the nearest last.
+    /// Where several children are met, all are fetched: the nearest is needed next, the others soon.
     #[inline(always)]
-    pub(crate) fn push_hits<const SIZE: usize>(&self, node: Child, slabs: &Slabs, stack: &mut Stack<SIZE>) {
-        let node = &self.nodes[node.0 as usize];
-        let (mut mask, enter) = node.test(slabs);
-        let base = stack.len();
-        while mask != 0 {
-            let slot = mask.trailing_zeros() as usize & 7;
-            mask &= mask - 1;
-            stack.insert(base, enter[slot], node.children[slot].0);
+    fn prefetch(&self, node: &Node, mask: u32, leaf: &impl Leaf) {
+        let more = mask & mask.wrapping_sub(1);
+        for slot in Bits(more) {
+            let child = node.children[slot];
+            if child.is_leaf() {
+                leaf.prefetch(child.items());
+            } else if let Some(node) = self.nodes.get(child.0 as usize) {
+                prefetch(node);
+            }
         }
     }
 
     /// Whether one ray hits something in the subtree at `from`; the stack is left as it was.
-    pub(crate) fn any_below<const SIZE: usize>(
+    #[inline(always)]
+    pub(crate) fn any_below<S: Lanes>(
         &self,
+        simd: S,
         from: Child,
-        stack: &mut Stack<SIZE>,
+        stack: &mut Stack,
         lane: usize,
         ray: &Ray,
+        slabs: &Slabs,
         leaf: &mut impl Leaf,
     ) -> bool {
-        let slabs = Slabs::of_ray(ray);
-        let base = stack.len();
+        let (nodes, base) = (self.nodes.as_slice(), stack.len());
         let mut current = from;
         loop {
-            if !current.is_leaf() {
-                let node = &self.nodes[current.0 as usize];
-                let (mut mask, _) = node.test(&slabs);
-                while mask != 0 {
-                    let slot = mask.trailing_zeros() as usize & 7;
-                    mask &= mask - 1;
-                    stack.push(0.0, node.children[slot].0);
+            let next = if current.is_leaf() {
+                if leaf.any(lane, ray, current.items()) {
+                    stack.truncate(base);
+                    return true;
                 }
-            } else if leaf.any(lane, ray, current.items()) {
-                stack.truncate(base);
-                return true;
-            }
-            if stack.len() == base {
-                return false;
-            }
-            let Some((_, word)) = stack.pop() else { return false };
-            current = Child(word);
+                None
+            } else {
+                let node = &nodes[current.0 as usize];
+                let (mask, _) = node.test(simd, slabs);
+                //PF self.prefetch(node, mask, leaf);
+                first(node, mask, stack)
+            };
+            current = match next {
+                Some(child) => child,
+                None => match next_below(stack, base, f32::INFINITY) {
+                    Some(child) => child,
+                    None => return false,
+                },
+            };
+        }
+    }
+}
+
+/// One of the children that are met; the others go onto the stack.
+#[inline(always)]
+fn first(node: &Node, mask: u32, stack: &mut Stack) -> Option<Child> {
+    if mask == 0 {
+        return None;
+    }
+    let mut more = mask & (mask - 1);
+    while more != 0 {
+        stack.push(entry(0.0, node.children[more.trailing_zeros() as usize & 7].0));
+        more &= more - 1;
+    }
+    Some(node.children[mask.trailing_zeros() as usize & 7])
+}
+
+/// The next child on the stack that is entered before `t_max`.
+#[inline(always)]
+fn next_below(stack: &mut Stack, base: usize, t_max: f32) -> Option<Child> {
+    while stack.len() > base {
+        let entry = stack.pop()?;
+        if distance(entry) <= t_max {
+            return Some(Child(entry as u32));
+        }
+    }
+    None
+}
+
+/// The nearest of the children that are met; the others go onto the stack, farthest first. One and two are
+/// the rule and stand apart: branches let the processor guess the next node and fetch it before the boxes are
+/// tested, selections would not.
+#[inline(always)]
+fn nearest(node: &Node, mut mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
+    if mask == 0 {
+        return None;
+    }
+    let mut next = || {
+        let slot = mask.trailing_zeros() as usize & 7;
+        mask &= mask - 1;
+        (entry(enter[slot], node.children[slot].0), mask == 0)
+    };
+    let (first, last) = next();
+    if last {
+        return Some(Child(first as u32));
+    }
+    let (second, last) = next();
+    if last {
+        if first <= second {
+            stack.push(second);
+            return Some(Child(first as u32));
+        }
+        stack.push(first);
+        return Some(Child(second as u32));
+    }
+    let (near, far) = if first <= second { (first, second) } else { (second, first) };
+    let base = stack.len();
+    stack.push(far);
+    stack.push(near);
+    loop {
+        let (more, last) = next();
+        stack.insert(base, more);
+        if last {
+            return Some(Child(stack.pop()? as u32));
         }
     }
 }

@@ -4,7 +4,8 @@
 //! the first of its far planes. Three rules make it safe to cull by:
 //!
 //! - The far distances are widened by 8 ulp. Rounding of the test itself can cost 3.5 (Ize 2013), the rest
-//!   covers the rounding of what lies in the box.
+//!   covers the rounding of what lies in the box. A single ray's planes are also moved outwards by a few ulp of the
+//!   origin, so that the test may be one multiplication and subtraction, fused or not.
 //! - A direction component of zero gives an infinite inverse, and `0 · infinity` (the origin lies in a plane
 //!   of the box) a NaN, which must not narrow the range. A component so small that its inverse overflows
 //!   would give wrong distances; its inverse is made NaN, so that this axis never narrows anything.
@@ -15,16 +16,38 @@
 //! (interval arithmetic: Boulos, Wald, Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray
 //! Packets", 2006). Rounding is monotonic, so the interval's result bounds that of each ray exactly.
 
-use crate::lanes::{self, less_or_equal, max, min};
+use crate::lanes::{Lanes, max, min};
+use fearless_simd::f32x4;
+use fearless_simd::prelude::*;
 use crate::node::WIDTH;
-use juggler_math::{Aabb, Ray};
+use juggler_math::{Ray, Vec3};
 
-const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
+pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
 const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
 
-/// One ray or the interval of several, ready for [`Node::test`](crate::node::Node::test).
+/// How much of its offset a plane may be off by: rounding of the inverse and of the offset, 2 ulp with room.
+const OFFSET: f32 = 4.0 * f32::EPSILON;
+
+/// One ray, ready for [`Node::test`](crate::node::Node::test): a plane at `p` is met at
+/// `p * inverse + offset`, with both rounded to the safe side. The fourth of each four means nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slabs {
+    /// Bit per axis: 0 where the minimum is the near plane, 1 where the maximum is.
+    pub signs: u32,
+    /// Of the direction as it is: infinite where it is zero, NaN where only the inverse overflows.
+    pub exact_inverse: [f32; 4],
+    pub inverse: [f32; 4],
+    pub near_offset: [f32; 4],
+    pub far_inverse: [f32; 4],
+    pub far_offset: [f32; 4],
+    pub t_min: f32,
+    pub t_max: f32,
+}
+
+/// The interval of several rays, ready for [`Node::test_bundle`](crate::node::Node::test_bundle): a plane at `p` is
+/// met at `(p - origin) * inverse`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bundle {
     /// Per axis 0 where the minimum is the near plane, 1 where the maximum is.
     pub side: [usize; 3],
     pub near_origin: [f32; 3],
@@ -42,8 +65,19 @@ pub(crate) fn cull_distance(t_max: f32) -> f32 {
     (t_max * SLACK).min(f32::MAX)
 }
 
-/// The inverse of a direction's component, NaN where it overflows though the component is not zero.
+/// The inverses of a direction's components, NaN where one overflows though the component is not zero.
 #[inline(always)]
+pub(crate) fn inverses(direction: Vec3) -> Vec3 {
+    let inverses = Vec3::ONE / direction;
+    if inverses.is_finite() { inverses } else { exceptional(direction) }
+}
+
+#[cold]
+#[inline(never)]
+fn exceptional(direction: Vec3) -> Vec3 {
+    Vec3::from(direction.to_array().map(inverse))
+}
+
 fn inverse(component: f32) -> f32 {
     let inverse = 1.0 / component;
     if inverse.is_infinite() && component != 0.0 { f32::NAN } else { inverse }
@@ -51,20 +85,69 @@ fn inverse(component: f32) -> f32 {
 
 impl Slabs {
     #[inline(always)]
-    pub fn of_ray(ray: &Ray) -> Self {
-        let origin = ray.origin.to_array();
-        let near_inverse = ray.direction.to_array().map(inverse);
+    pub fn of_ray<S: Lanes>(simd: S, ray: &Ray) -> Self {
+        let (o, d) = (ray.origin, ray.direction);
+        let origin: f32x4<S> = [o.x, o.y, o.z, d.x].simd_into(simd);
+        let direction: f32x4<S> = [d.x, d.y, d.z, ray.t_min].simd_into(simd);
+        let inverse = f32x4::splat(simd, 1.0) / direction;
+        let offset = origin * inverse;
+        if offset.abs().simd_lt(f32::INFINITY).to_bitmask() & 7 != 7 {
+            return Self::parallel(*ray);
+        }
+        let pad = offset.abs() * OFFSET;
         Self {
-            side: ray.direction.to_array().map(|d| usize::from(d.is_sign_negative())),
-            near_origin: origin,
-            far_origin: origin,
-            near_inverse,
-            far_inverse: near_inverse.map(|i| i * WIDEN),
+            signs: direction.simd_lt(0.0).to_bitmask() as u32,
+            exact_inverse: inverse.into(),
+            inverse: inverse.into(),
+            near_offset: (-offset - pad).into(),
+            far_inverse: (inverse * WIDEN).into(),
+            far_offset: (pad - offset * WIDEN).into(),
             t_min: ray.t_min,
             t_max: cull_distance(ray.t_max),
         }
     }
 
+    /// For rays that run parallel, or almost, to an axis plane: along that axis the ray stays where it is, so
+    /// planes lie far behind or far ahead. The offset is exact, a power of two times the origin, and a plane
+    /// through the origin counts as before and behind.
+    #[cold]
+    #[inline(never)]
+    fn parallel(ray: Ray) -> Self {
+        const FAR: f32 = (1u128 << 125) as f32;
+        const PAD: f32 = (1u128 << 104) as f32;
+        let mut slabs = Self {
+            signs: 0,
+            exact_inverse: [0.0; 4],
+            inverse: [0.0; 4],
+            near_offset: [0.0; 4],
+            far_inverse: [0.0; 4],
+            far_offset: [0.0; 4],
+            t_min: ray.t_min,
+            t_max: cull_distance(ray.t_max),
+        };
+        for axis in 0..3 {
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            let exact = inverse(direction);
+            let offset = origin * exact;
+            slabs.signs |= u32::from(direction.is_sign_negative()) << axis;
+            slabs.exact_inverse[axis] = exact;
+            let (inverse, far_inverse, offset, pad) = if offset.is_finite() {
+                (exact, exact * WIDEN, offset, offset.abs() * OFFSET)
+            } else {
+                let exponent = origin.abs().clamp(1.0, FAR).to_bits() >> 23;
+                let inverse = (FAR / f32::from_bits((exponent + 1) << 23)).copysign(direction);
+                (inverse, inverse, origin * inverse, PAD)
+            };
+            slabs.inverse[axis] = inverse;
+            slabs.near_offset[axis] = -offset - pad;
+            slabs.far_inverse[axis] = far_inverse;
+            slabs.far_offset[axis] = pad - offset * (far_inverse / inverse);
+        }
+        slabs
+    }
+}
+
+impl Bundle {
     /// The interval of several rays; `None` where their directions do not share an octant or a ray may
     /// start before its origin. What it misses, every one of the rays misses.
     #[inline(always)]
@@ -74,7 +157,7 @@ impl Slabs {
         for ray in rays {
             interval.add(ray);
         }
-        interval.slabs()
+        interval.bundle()
     }
 }
 
@@ -115,7 +198,7 @@ impl Interval {
     /// Distances below `t_min >= 0` are cut off anyway, so the near planes only need their smallest positive
     /// distance (smallest inverse) and the far planes their largest.
     #[inline(always)]
-    fn slabs(&self) -> Option<Slabs> {
+    fn bundle(&self) -> Option<Bundle> {
         let mixed = (3..6).any(|lane| (self.any_negative[lane] ^ self.all_negative[lane]) >> 31 != 0);
         if mixed || self.low[6] < 0.0 {
             return None;
@@ -123,94 +206,15 @@ impl Interval {
         let side: [usize; 3] = std::array::from_fn(|axis| (self.any_negative[axis + 3] >> 31) as usize);
         let pick = |near: [&[f32; WIDTH]; 2], first: usize| std::array::from_fn(|axis| near[side[axis]][first + axis]);
         let direction: [[f32; 3]; 2] = [pick([&self.high, &self.low], 3), pick([&self.low, &self.high], 3)];
-        Some(Slabs {
+        Some(Bundle {
             side,
             near_origin: pick([&self.high, &self.low], 0),
             far_origin: pick([&self.low, &self.high], 0),
-            near_inverse: direction[0].map(inverse),
-            far_inverse: direction[1].map(|d| inverse(d) * WIDEN),
+            near_inverse: inverses(Vec3::from(direction[0])).to_array(),
+            far_inverse: (inverses(Vec3::from(direction[1])) * WIDEN).to_array(),
             t_min: self.low[6],
             t_max: cull_distance(self.high[7]),
         })
     }
 }
 
-/// Up to eight rays of one octant side by side, to test all against one box.
-pub(crate) struct Lanes {
-    side: [usize; 3],
-    origin: [[f32; WIDTH]; 3],
-    inverse: [[f32; WIDTH]; 3],
-    t_min: [f32; WIDTH],
-    t_max: [f32; WIDTH],
-}
-
-impl Lanes {
-    /// Lanes without a ray meet nothing.
-    pub fn new(rays: &[Ray]) -> Self {
-        let mut lanes = Self {
-            side: [0; 3],
-            origin: [[0.0; WIDTH]; 3],
-            inverse: [[1.0; WIDTH]; 3],
-            t_min: [f32::INFINITY; WIDTH],
-            t_max: [f32::NEG_INFINITY; WIDTH],
-        };
-        for (lane, ray) in rays.iter().take(WIDTH).enumerate() {
-            for axis in 0..3 {
-                lanes.origin[axis][lane] = ray.origin[axis];
-                lanes.inverse[axis][lane] = ray.direction[axis];
-            }
-            lanes.t_min[lane] = ray.t_min;
-            lanes.t_max[lane] = ray.t_max;
-        }
-        for (axis, inverses) in lanes.inverse.iter_mut().enumerate() {
-            lanes.side[axis] = usize::from(inverses[0].is_sign_negative());
-            *inverses = lanes::inverse(inverses);
-        }
-        lanes.t_max = lanes.t_max.map(cull_distance);
-        lanes
-    }
-
-    /// Tells how far the ray of a lane still goes.
-    #[inline(always)]
-    pub fn shorten(&mut self, lane: usize, t_max: f32) {
-        self.t_max[lane & (WIDTH - 1)] = cull_distance(t_max);
-    }
-
-    /// The farthest that any ray goes, in the sense of [`cull_distance`].
-    #[inline(always)]
-    pub fn t_max(&self) -> f32 {
-        self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a))
-    }
-
-    /// Which rays meet the box in `slot` of the bounds (bit per lane): bit by bit what
-    /// [`Node::test`](crate::node::Node::test) says of each ray alone.
-    #[inline(always)]
-    pub fn test(&self, bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize) -> u32 {
-        let slot = slot & (WIDTH - 1);
-        let mut enter = self.t_min;
-        let mut leave = self.t_max;
-        for (axis, sides) in bounds.iter().enumerate() {
-            let side = self.side[axis] & 1;
-            let (near, far) = (sides[side][slot], sides[side ^ 1][slot]);
-            for i in 0..WIDTH {
-                let n = (near - self.origin[axis][i]) * self.inverse[axis][i];
-                let f = (far - self.origin[axis][i]) * (self.inverse[axis][i] * WIDEN);
-                enter[i] = max(n, enter[i]);
-                leave[i] = min(f, leave[i]);
-            }
-        }
-        less_or_equal(&enter, &leave)
-    }
-}
-
-/// Where the ray's line enters the box, as the traversal computes it.
-pub(crate) fn entry(ray: &Ray, bounds: &Aabb) -> f32 {
-    let mut enter = f32::NEG_INFINITY;
-    for axis in 0..3 {
-        let direction = ray.direction[axis];
-        let near = if direction.is_sign_negative() { bounds.max[axis] } else { bounds.min[axis] };
-        let n = (near - ray.origin[axis]) * inverse(direction);
-        enter = max(n, enter);
-    }
-    enter
-}

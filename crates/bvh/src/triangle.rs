@@ -11,18 +11,21 @@
 //! is never before the entry of the triangle's own box, so that which hit is closest cannot depend on the
 //! order in which boxes are visited.
 
-use crate::slabs::entry;
-use juggler_math::{Aabb, Ray, Vec3};
+use crate::lanes::{max, min};
+use crate::slabs::inverses;
+use juggler_math::{Ray, Vec3};
 
 /// Determinants outside this range have lost too much to underflow or overflow in single precision.
-const SAFE: std::ops::Range<f32> = 1e-24..1e30;
+pub(crate) const SAFE: std::ops::Range<f32> = 1e-24..1e30;
 
 /// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
 /// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
 /// that meets an edge or a corner hits at least one of the triangles there. Triangles without area are
 /// never hit.
 pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, f32, f32)> {
-    let hit = Shear::of(ray).intersect(ray, [a, b, c])?;
+    let [x, y, z] = inverses(ray.direction).to_array();
+    let signs = (0..3).fold(0, |signs, axis| signs | u32::from(ray.direction[axis].is_sign_negative()) << axis);
+    let hit = Shear::of(ray, [x, y, z, 0.0], signs).intersect(ray, [a, b, c])?;
     has_area([a, b, c]).then_some(hit)
 }
 
@@ -32,49 +35,75 @@ pub(crate) fn has_area([a, b, c]: [Vec3; 3]) -> bool {
     a.is_finite() && b.is_finite() && c.is_finite() && normal != juggler_math::DVec3::ZERO
 }
 
-/// The shear that makes the ray the z axis, and the ray's origin.
+/// A ray made ready for triangles: the shear that makes it the z axis, and what it takes to say where it enters
+/// a box. All by permuted axis: z is where the direction is largest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    pub origin: [f32; 3],
-    /// The axes that become x, y and z; z is where the direction is largest.
+    /// The axes that become x, y and z.
     pub axes: [usize; 3],
+    pub origin: [f32; 3],
     /// What to multiply z by and subtract from x and y, and what to multiply z by.
     pub factors: [f32; 3],
+    pub inverse: [f32; 3],
+    /// Where the minimum is the near plane 0, else 1.
+    pub side: [usize; 3],
 }
 
 /// A vertex in the ray's frame.
 type Point = [f32; 3];
 
 impl Shear {
+    /// `inverse` of the direction as [`inverses`] gives it, `signs` of the direction, a bit per axis.
     #[inline(always)]
-    pub fn of(ray: &Ray) -> Self {
-        let d = ray.direction.to_array();
+    pub fn of(ray: &Ray, inverse: [f32; 4], signs: u32) -> Self {
+        const NEXT: [usize; 3] = [1, 2, 0];
+        const LAST: [usize; 3] = [2, 0, 1];
         let size = ray.direction.abs();
         let z = if size.x >= size.y && size.x >= size.z { 0 } else { 2 - usize::from(size.y >= size.z) };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let factors = [d[axes[0]] / d[z], d[axes[1]] / d[z], 1.0 / d[z]];
-        Self { origin: ray.origin.to_array(), axes, factors }
+        let (x, y) = (NEXT[z], LAST[z]);
+        let (o, d) = (ray.origin, ray.direction);
+        let (o, d) = ([o.x, o.y, o.z, d.x], [d.x, d.y, d.z, ray.t_min]);
+        let depth = inverse[z];
+        let side = |axis: usize| (signs >> axis) as usize & 1;
+        Self {
+            axes: [x, y, z],
+            origin: [o[x], o[y], o[z]],
+            factors: [d[x] * depth, d[y] * depth, depth],
+            inverse: [inverse[x], inverse[y], depth],
+            side: [side(x), side(y), side(z)],
+        }
     }
 
     #[inline(always)]
-    fn project(&self, vertex: Vec3) -> Point {
-        let vertex = vertex.to_array();
-        let [x, y, z] = self.axes.map(|axis| vertex[axis] - self.origin[axis]);
+    fn project(&self, vertex: [f32; 3]) -> Point {
+        let [x, y, z]: [f32; 3] = std::array::from_fn(|k| vertex[k] - self.origin[k]);
         [x - self.factors[0] * z, y - self.factors[1] * z, self.factors[2] * z]
     }
 
     /// [`intersect_triangle`] for the ray that the shear was made of, and a triangle that
     /// [has an area](has_area).
-    #[inline]
-    pub fn intersect(&self, ray: &Ray, vertices: [Vec3; 3]) -> Option<(f32, f32, f32)> {
+    fn intersect(&self, ray: &Ray, vertices: [Vec3; 3]) -> Option<(f32, f32, f32)> {
+        let vertices = vertices.map(|vertex| self.axes.map(|axis| vertex[axis]));
         let points = vertices.map(|vertex| self.project(vertex));
         let (t, u, v) = weigh(points)?;
-        if t > ray.t_max {
+        let end = max(points[0][2], max(points[1][2], points[2][2]));
+        if !(t <= ray.t_max && end >= ray.t_min) {
             return None;
         }
-        let start = entry(ray, &Aabb::from_points(vertices));
-        let t = if start > t { start } else { t };
+        let t = self.clamp(t, vertices);
         (ray.t_min <= t && t <= ray.t_max).then_some((t, u, v))
+    }
+
+    /// The distance, but not before the ray's line enters the box of the triangle as the traversal computes it.
+    #[inline(always)]
+    pub fn clamp(&self, t: f32, [a, b, c]: [[f32; 3]; 3]) -> f32 {
+        let mut enter = t;
+        for k in 0..3 {
+            // Looked up, not chosen: the signs are hard to guess for the processor.
+            let sides = [min(a[k], min(b[k], c[k])), max(a[k], max(b[k], c[k]))];
+            enter = max((sides[self.side[k] & 1] - self.origin[k]) * self.inverse[k], enter);
+        }
+        enter
     }
 }
 
@@ -96,14 +125,14 @@ fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
 
 /// Twice the signed areas between the axis and each edge, in the order of the opposite corners.
 #[inline(always)]
-fn edges<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>([a, b, c]: [[T; 2]; 3]) -> [T; 3] {
+pub(crate) fn edges<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>([a, b, c]: [[T; 2]; 3]) -> [T; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
 }
 
 /// [`weigh`] in double precision, where the signs are exact: for axes through an edge or a corner, and
 /// for very large or small triangles.
 #[cold]
-fn weigh_exactly(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+pub(crate) fn weigh_exactly(points: [Point; 3]) -> Option<(f32, f32, f32)> {
     let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
     if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
         return None;

@@ -4,6 +4,7 @@ mod binned;
 mod collapse;
 
 use crate::Bvh;
+use fearless_simd::Level;
 use crate::node::Child;
 use juggler_math::{Aabb, Vec3};
 use std::ops::Range;
@@ -117,7 +118,7 @@ impl Bvh {
         stats.left_out = boxes.len() - items.len();
         let order = items.iter().map(|item| item.index).collect();
         let bounds = binary.first().map_or(Aabb::EMPTY, |root| root.bounds);
-        Self { nodes, order, bounds, stats }
+        Self { nodes, order, bounds, stats, level: if std::env::var("LV").is_ok() { Level::Avx2(Level::new().as_avx2().unwrap()) } else { Level::new() } }
     }
 
     /// The tree with each leaf's range starting at the number of the leaf instead of a position; beside it

@@ -1,9 +1,18 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
-use crate::lanes::{less, max, min};
-use crate::triangle::{Shear, has_area};
-use crate::{BuildOptions, BuildStats, Bvh, Leaf, PACKET, Quality};
+mod meet;
+mod one;
+
+use crate::lanes::Lanes;
+use crate::node::Child;
+use crate::slabs::Slabs;
+use crate::stack::Stack;
+use crate::triangle::has_area;
+use crate::{BuildOptions, BuildStats, Bvh, Quality};
+use fearless_simd::dispatch;
 use juggler_math::{Aabb, Ray, Vec3};
+use meet::Corner;
+use one::One;
 use std::fmt;
 use std::ops::Range;
 
@@ -88,33 +97,38 @@ impl TriangleBvh {
 
     /// The closest hit; of hits at equal distance that on the triangle with the smallest number.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
-        let mut one = One { blocks: &self.blocks, shear: Shear::of(ray), hit: None };
-        self.bvh.closest(&mut { *ray }, &mut one);
-        one.hit
+        dispatch!(self.bvh.level, simd => self.closest_one(simd, &mut Stack::new(), ray))
     }
 
     /// Whether any triangle is hit.
     pub fn any(&self, ray: &Ray) -> bool {
-        self.bvh.any(ray, &mut One { blocks: &self.blocks, shear: Shear::of(ray), hit: None })
+        dispatch!(self.bvh.level, simd => self.any_one(simd, &mut Stack::new(), ray))
+    }
+
+    #[inline(always)]
+    fn closest_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> Option<TriangleHit> {
+        let slabs = Slabs::of_ray(simd, ray);
+        let mut one = One::new(simd, &self.blocks, ray, &slabs);
+        self.bvh.closest_below(simd, Child::ROOT, stack, 0, &mut { *ray }, slabs, &mut one);
+        one.hit
+    }
+
+    #[inline(always)]
+    fn any_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> bool {
+        let slabs = Slabs::of_ray(simd, ray);
+        let mut one = One::new(simd, &self.blocks, ray, &slabs);
+        self.bvh.any_below(simd, Child::ROOT, stack, 0, ray, &slabs, &mut one)
     }
 
     /// [`TriangleBvh::closest`] for coherent rays, see [`Bvh::closest_packet`]. The answers replace what
     /// `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        for (rays, hits) in rays.chunks_mut(PACKET).zip(hits.chunks_mut(PACKET)) {
-            let count = rays.len().min(hits.len());
-            hits.fill(None);
-            let mut many = Many { blocks: &self.blocks, shears: [None; PACKET], hits };
-            self.bvh.closest_packet(&mut rays[..count], &mut many);
-        }
+        self.closest_batch(rays, hits);
     }
 
     /// [`TriangleBvh::any`] for coherent rays, see [`Bvh::any_packet`].
     pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool]) {
-        for (rays, occluded) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)) {
-            let mut many = Many { blocks: &self.blocks, shears: [None; PACKET], hits: &mut [] };
-            self.bvh.any_packet(rays, occluded, &mut many);
-        }
+        self.any_batch(rays, occluded);
     }
 
     /// [`TriangleBvh::closest`] for any number of unrelated rays, see [`Bvh::closest_batch`]. The answers
@@ -137,8 +151,8 @@ impl TriangleBvh {
 
     /// What the search for the closest hit looks at.
     pub fn visits(&self, ray: &Ray) -> crate::Visits {
-        let mut one = One { blocks: &self.blocks, shear: Shear::of(ray), hit: None };
-        self.bvh.closest_counted(&mut { *ray }, &mut one)
+        let simd = fearless_simd::Level::baseline();
+        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut One::new(simd, &self.blocks, ray, &Slabs::of_ray(simd, ray))))
     }
 
     /// A box around all triangles, at most a few millionths larger than needed; empty when there are none.
@@ -203,122 +217,24 @@ impl Block {
         self.index[lane] = triangle;
     }
 
-    fn corners(&self, lane: usize) -> [Vec3; 3] {
-        std::array::from_fn(|corner| Vec3::from(self.vertices[corner].map(|values| values[lane])))
+    /// A corner, axes in the order of the shear.
+    #[inline(always)]
+    fn corner<S: Lanes>(&self, simd: S, corner: usize, [x, y, z]: [usize; 3]) -> Corner<S> {
+        let axes = &self.vertices[corner];
+        [simd.load(&axes[x]), simd.load(&axes[y]), simd.load(&axes[z])]
     }
 
-    /// Corner by corner and lane by lane, x and y in the frame of the shear.
+    /// The corners of one lane, axes in the order of the shear.
     #[inline(always)]
-    fn project(&self, shear: &Shear, corner: usize) -> [[f32; LANES]; 2] {
-        let [x, y, z] = shear.axes;
-        let mut projected = [[0.0; LANES]; 2];
-        let values = &self.vertices[corner];
-        for lane in 0..LANES {
-            let depth = values[z][lane] - shear.origin[z];
-            projected[0][lane] = (values[x][lane] - shear.origin[x]) - shear.factors[0] * depth;
-            projected[1][lane] = (values[y][lane] - shear.origin[y]) - shear.factors[1] * depth;
-        }
-        projected
+    fn permuted(&self, lane: usize, axes: [usize; 3]) -> [[f32; 3]; 3] {
+        let [x, y, z] = axes;
+        let corner = |c: &[[f32; LANES]; 3]| [c[x][lane & 7], c[y][lane & 7], c[z][lane & 7]];
+        [corner(&self.vertices[0]), corner(&self.vertices[1]), corner(&self.vertices[2])]
     }
 
-    /// Lanes whose triangle the ray may hit (bit per lane): those where no two edges say otherwise. The same
-    /// sums as in [`Shear::intersect`], which has the last word.
+    /// All corners, axes in the order of the shear.
     #[inline(always)]
-    fn candidates(&self, shear: &Shear) -> u32 {
-        let [a, b, c] = [self.project(shear, 0), self.project(shear, 1), self.project(shear, 2)];
-        let (mut least, mut most) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            let u = c[0][lane] * b[1][lane] - c[1][lane] * b[0][lane];
-            let v = a[0][lane] * c[1][lane] - a[1][lane] * c[0][lane];
-            let w = b[0][lane] * a[1][lane] - b[1][lane] * a[0][lane];
-            least[lane] = min(u, min(v, w));
-            most[lane] = max(u, max(v, w));
-        }
-        !(less(&least, &[0.0; LANES]) & less(&[0.0; LANES], &most))
-    }
-
-    /// Candidates among the first `count` lanes.
-    #[inline(always)]
-    fn candidates_among(&self, count: usize, shear: &Shear) -> Lanes {
-        Lanes(self.candidates(shear) & ((1 << count) - 1))
-    }
-
-    /// Improves on `hit`, and shortens the ray to it.
-    #[inline(always)]
-    fn closest(&self, count: usize, shear: &Shear, ray: &mut Ray, hit: &mut Option<TriangleHit>) {
-        for lane in self.candidates_among(count, shear) {
-            let Some((t, u, v)) = shear.intersect(ray, self.corners(lane)) else { continue };
-            let index = self.index[lane];
-            if hit.is_none_or(|best| t < best.t || index < best.index) {
-                ray.t_max = t;
-                *hit = Some(TriangleHit { t, u, v, index });
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn any(&self, count: usize, shear: &Shear, ray: &Ray) -> bool {
-        self.candidates_among(count, shear).any(|lane| shear.intersect(ray, self.corners(lane)).is_some())
-    }
-}
-
-/// The lanes of a mask's bits, lowest first.
-struct Lanes(u32);
-
-impl Iterator for Lanes {
-    type Item = usize;
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<usize> {
-        let lane = self.0.trailing_zeros() as usize;
-        self.0 &= self.0.wrapping_sub(1);
-        (lane < LANES).then_some(lane)
-    }
-}
-
-/// Visitor for one ray.
-struct One<'a> {
-    blocks: &'a [Block],
-    shear: Shear,
-    hit: Option<TriangleHit>,
-}
-
-impl Leaf for One<'_> {
-    #[inline(always)]
-    fn closest(&mut self, _lane: usize, ray: &mut Ray, items: Range<u32>) {
-        self.blocks[items.start as usize].closest(items.len(), &self.shear, ray, &mut self.hit);
-    }
-
-    #[inline(always)]
-    fn any(&mut self, _lane: usize, ray: &Ray, items: Range<u32>) -> bool {
-        self.blocks[items.start as usize].any(items.len(), &self.shear, ray)
-    }
-}
-
-/// Visitor for a packet; a shear is made when its ray first reaches a leaf.
-struct Many<'a> {
-    blocks: &'a [Block],
-    shears: [Option<Shear>; PACKET],
-    hits: &'a mut [Option<TriangleHit>],
-}
-
-impl Many<'_> {
-    #[inline(always)]
-    fn shear(&mut self, lane: usize, ray: &Ray) -> Shear {
-        *self.shears[lane].get_or_insert_with(|| Shear::of(ray))
-    }
-}
-
-impl Leaf for Many<'_> {
-    #[inline(always)]
-    fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
-        let shear = self.shear(lane, ray);
-        self.blocks[items.start as usize].closest(items.len(), &shear, ray, &mut self.hits[lane]);
-    }
-
-    #[inline(always)]
-    fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
-        let shear = self.shear(lane, ray);
-        self.blocks[items.start as usize].any(items.len(), &shear, ray)
+    fn corners<S: Lanes>(&self, simd: S, axes: [usize; 3]) -> [Corner<S>; 3] {
+        [self.corner(simd, 0, axes), self.corner(simd, 1, axes), self.corner(simd, 2, axes)]
     }
 }
