@@ -42,6 +42,7 @@ mod inspect;
 mod lanes;
 mod node;
 mod packet;
+mod pages;
 mod single;
 mod slabs;
 mod stack;
@@ -57,13 +58,14 @@ pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
 use fearless_simd::Level;
 use juggler_math::{Aabb, Ray};
 use node::Node;
+use pages::Pages;
 use std::ops::Range;
 
 /// A tree of boxes, eight wide.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     /// The root is node 0; there is always one.
-    nodes: Vec<Node>,
+    nodes: Pages<Node>,
     order: Vec<u32>,
     bounds: Aabb,
     stats: BuildStats,
@@ -120,6 +122,6 @@ impl Bvh {
 
     /// Bytes of memory that the tree holds, without the items.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<u32>()
+        size_of::<Self>() + self.nodes.bytes() + self.order.capacity() * size_of::<u32>()
     }
 }

@@ -5,9 +5,9 @@
 
 use crate::lanes::{Lanes, bits};
 use crate::slabs::{Bundle, Slabs};
+use bytemuck::{Pod, Zeroable};
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
-use juggler_math::Aabb;
 use std::ops::Range;
 
 /// Children of a node.
@@ -20,7 +20,8 @@ const COUNT_SHIFT: u32 = 28;
 const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
 
 /// What hangs below: the number of a node, or a leaf bit, the count less one (3 bits) and the first position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
 pub(crate) struct Child(pub u32);
 
 impl Child {
@@ -51,7 +52,7 @@ impl Child {
 }
 
 /// Boxes of up to eight children and the children.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     /// `bounds[axis][0]` are the minima of the boxes, `bounds[axis][1]` the maxima. A slot without a child
@@ -60,6 +61,7 @@ pub(crate) struct Node {
     pub children: [Child; WIDTH],
     /// How many of the slots are in use.
     pub count: u32,
+    unused: [u32; 7],
 }
 
 impl Node {
@@ -67,14 +69,15 @@ impl Node {
         bounds: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
         children: [Child::ROOT; WIDTH],
         count: 0,
+        unused: [0; 7],
     };
 
     /// Puts a child into the next free slot.
-    pub fn add(&mut self, bounds: &Aabb, child: Child) {
+    pub fn add(&mut self, low: [f32; 3], high: [f32; 3], child: Child) {
         let slot = self.count as usize;
         for axis in 0..3 {
-            self.bounds[axis][0][slot] = bounds.min[axis];
-            self.bounds[axis][1][slot] = bounds.max[axis];
+            self.bounds[axis][0][slot] = low[axis];
+            self.bounds[axis][1][slot] = high[axis];
         }
         self.children[slot] = child;
         self.count += 1;
@@ -143,7 +146,7 @@ mod tests {
     #[test]
     fn free_slots_are_never_met() {
         let mut node = Node::EMPTY;
-        node.add(&Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE }, Child::leaf(0, 1));
+        node.add([-1.0; 3], [1.0; 3], Child::leaf(0, 1));
         for direction in [Vec3::X, -Vec3::X, Vec3::new(-0.0, 1.0, 0.0), Vec3::ONE, Vec3::new(1e-40, 1.0, 0.0)] {
             let slabs = Slabs::of_ray(&Ray::new(Vec3::ZERO, direction));
             for level in crate::levels() {

@@ -60,7 +60,7 @@ impl Bvh {
         mut slabs: Slabs,
         leaf: &mut impl Leaf,
     ) {
-        let (nodes, base) = (self.nodes.as_slice(), stack.len());
+        let (nodes, base) = (&*self.nodes, stack.len());
         let mut current = from;
         loop {
             let next = if current.is_leaf() {
@@ -109,7 +109,7 @@ impl Bvh {
         slabs: &Slabs,
         leaf: &mut impl Leaf,
     ) -> bool {
-        let (nodes, base) = (self.nodes.as_slice(), stack.len());
+        let (nodes, base) = (&*self.nodes, stack.len());
         let mut current = from;
         loop {
             let next = if current.is_leaf() {

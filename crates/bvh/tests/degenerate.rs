@@ -98,19 +98,6 @@ fn trees_that_want_to_be_deep_stay_shallow() {
 }
 
 #[test]
-fn the_same_boxes_give_the_same_tree_on_every_machine() {
-    let random = &mut Random::new(99);
-    let boxes: Vec<Aabb> = (0..3000).map(|_| Aabb::from_points([random.point(), random.point()])).collect();
-    let fingerprint = |quality| {
-        let bvh = Bvh::build(&boxes, quality);
-        assert_eq!(bvh.order(), Bvh::build(&boxes, quality).order());
-        let hash = bvh.order().iter().fold(0, |hash, &item| juggler_math::hash::combine(hash, item));
-        (hash, bvh.stats().nodes)
-    };
-    assert_eq!(Quality::ALL.map(fingerprint), [(516_097_615, 825), (4_211_973_403, 817), (377_352_291, 782)]);
-}
-
-#[test]
 fn triangles_at_the_edge() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, vec3(f32::NAN, 0.0, 0.0), Vec3::INFINITY, Vec3::X * 0.5];
     let down = Ray::new(vec3(0.2, 0.2, 1.0), -Vec3::Z);

@@ -1,73 +1,187 @@
 //! From two wide to eight wide: each node takes the place of its children, the largest first, until there
-//! are eight (Wald, Benthin, Boulos 2008, "Getting Rid of Packets", section 3.2).
+//! are eight (Wald, Benthin, Boulos 2008, "Getting Rid of Packets", section 3.2). Nodes lie in depth-first
+//! order, below a node its largest child first.
 
-use super::{BinaryNode, BuildStats, half_area};
+use super::BuildStats;
+use super::binary::BinaryNode;
 use crate::node::{Child, Node, WIDTH};
+use crate::pages::Pages;
+use rayon::prelude::*;
+
+/// Wide levels whose children are tasks of their own.
+const TASK_LEVELS: usize = 3;
+/// Binary trees of fewer nodes are collapsed by one thread.
+const SMALL: usize = 1 << 13;
 
 /// The wide tree, root first, and what can be said about it. The root is there even when there is no item.
-pub(super) fn collapse(binary: &[BinaryNode], block: usize) -> (Vec<Node>, BuildStats) {
-    let mut collapser = Collapser { binary, block, nodes: Vec::new(), stats: BuildStats::default() };
-    match binary.first() {
-        None => collapser.nodes.push(Node::EMPTY),
-        Some(_) => _ = collapser.emit(0, 1),
+pub(super) fn collapse(binary: &[BinaryNode], block: usize) -> (Pages<Node>, BuildStats) {
+    let Some(root) = binary.first() else {
+        return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, ..BuildStats::default() });
+    };
+    let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
+    // A tree that is one leaf gets a root above it.
+    let above = [*root];
+    let collapser = Collapser { binary: if root.is_leaf() { &above } else { binary }, block };
+    let subtree = collapser.subtree(0, levels);
+    let mut stats = subtree.stats;
+    let nodes = flatten(subtree.pieces);
+    stats.nodes = nodes.len();
+    let area = root.half_area();
+    stats.sah_cost = if area > 0.0 { stats.sah_cost / area } else { 0.0 };
+    (nodes, stats)
+}
+
+/// Pieces one after another; nodes name their children relative to their own position until then.
+fn flatten(pieces: Vec<Vec<Node>>) -> Pages<Node> {
+    let mut nodes = Pages::zeroed(pieces.iter().map(Vec::len).sum());
+    let (mut rest, mut start) = (&mut nodes[..], 0);
+    let mut jobs = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let (target, after) = rest.split_at_mut(piece.len());
+        rest = after;
+        let position = start;
+        start += piece.len();
+        jobs.push((target, piece, position));
     }
-    let root_area = binary.first().map_or(1.0, |root| half_area(&root.bounds));
-    let mut stats = collapser.stats;
-    stats.nodes = collapser.nodes.len();
-    stats.sah_cost = if root_area > 0.0 { stats.sah_cost / root_area } else { 0.0 };
-    (collapser.nodes, stats)
+    jobs.into_par_iter().for_each(|(target, piece, start)| {
+        for ((place, mut node), position) in target.iter_mut().zip(piece).zip(start..) {
+            for child in node.children[..node.count as usize].iter_mut().filter(|child| !child.is_leaf()) {
+                *child = Child::node(child.0 as usize + position);
+            }
+            *place = node;
+        }
+    });
+    nodes
+}
+
+/// A wide subtree, root first.
+struct Subtree {
+    pieces: Vec<Vec<Node>>,
+    /// With `nodes` not yet counted and the cost times the area of the whole tree.
+    stats: BuildStats,
 }
 
 struct Collapser<'a> {
     binary: &'a [BinaryNode],
     block: usize,
-    nodes: Vec<Node>,
-    stats: BuildStats,
 }
 
 impl Collapser<'_> {
-    /// Appends the wide node for a binary one and all below it; returns its number and the stack it needs.
-    fn emit(&mut self, binary: usize, depth: usize) -> (usize, usize) {
-        let index = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
-        self.stats.depth = self.stats.depth.max(depth);
-        self.stats.sah_cost += half_area(&self.binary[binary].bounds);
-        let (members, count) = self.members(binary);
-        let mut node = Node::EMPTY;
-        let mut below = 0;
-        for &member in &members[..count] {
-            let source = &self.binary[member];
-            let child = if source.count > 0 {
-                self.stats.leaf_sizes[source.count] += 1;
-                self.stats.sah_cost += half_area(&source.bounds) * source.count.div_ceil(self.block) as f64;
-                Child::leaf(source.first, source.count)
-            } else {
-                let (child, stack) = self.emit(member, depth + 1);
-                below = below.max(stack);
-                Child::node(child)
-            };
-            node.add(&self.binary[member].bounds, child);
+    /// The wide tree below a binary node; the children down to some `levels` are tasks of their own.
+    fn subtree(&self, binary: usize, levels: usize) -> Subtree {
+        if levels == 0 {
+            let mut nodes = Vec::new();
+            let stats = self.emit(binary, &mut nodes);
+            return Subtree { pieces: vec![nodes], stats };
         }
-        self.nodes[index] = node;
-        // All children are pushed at once; when one is entered, the others wait.
-        let stack = count.max(count - 1 + below);
-        self.stats.stack = self.stats.stack.max(stack);
-        (index, stack)
+        let (mut node, members) = self.node(binary);
+        let inner: Vec<(usize, usize)> = self.inner(&members).collect();
+        let below: Vec<Subtree> = inner.par_iter().map(|&(_, member)| self.subtree(member, levels - 1)).collect();
+        let (mut pieces, mut size) = (vec![Vec::new()], 1);
+        let mut stats = self.alone(binary, &members);
+        for ((slot, _), subtree) in inner.iter().zip(below) {
+            node.children[*slot] = Child::node(size);
+            size += subtree.pieces.iter().map(Vec::len).sum::<usize>();
+            pieces.extend(subtree.pieces);
+            add_child(&mut stats, &subtree.stats, members.count);
+        }
+        pieces[0].push(node);
+        Subtree { pieces, stats }
     }
 
-    /// The binary nodes that become children of the wide node in place of `binary`.
-    fn members(&self, binary: usize) -> ([usize; WIDTH], usize) {
-        let mut members = [binary; WIDTH];
-        let mut count = 1;
-        while count < WIDTH {
-            let inner = (0..count).filter(|&slot| self.binary[members[slot]].count == 0);
-            let area = |slot: usize| half_area(&self.binary[members[slot]].bounds);
-            let Some(slot) = inner.max_by(|&a, &b| area(a).total_cmp(&area(b)).then(b.cmp(&a))) else { break };
-            let first = self.binary[members[slot]].first;
-            members[slot] = first;
-            members[count] = first + 1;
-            count += 1;
+    /// Appends the wide node for a binary one and all below it.
+    fn emit(&self, binary: usize, nodes: &mut Vec<Node>) -> BuildStats {
+        let place = nodes.len();
+        let (node, members) = self.node(binary);
+        nodes.push(node);
+        let mut stats = self.alone(binary, &members);
+        for (slot, member) in self.inner(&members) {
+            nodes[place].children[slot] = Child::node(nodes.len() - place);
+            add_child(&mut stats, &self.emit(member, nodes), members.count);
         }
-        (members, count)
+        stats
+    }
+
+    /// The wide node, without the numbers of the children that are nodes.
+    fn node(&self, binary: usize) -> (Node, Members) {
+        let members = self.members(binary);
+        let mut node = Node::EMPTY;
+        for &(member, _) in members.list().iter().rev() {
+            let source = &self.binary[member];
+            let leaf = || Child::leaf(source.first as usize, source.count as usize);
+            node.add(source.low, source.high, if source.is_leaf() { leaf() } else { Child::ROOT });
+        }
+        (node, members)
+    }
+
+    /// Slots and binary nodes of the children that are not leaves, the largest first. It has the last slot.
+    fn inner(&self, members: &Members) -> impl Iterator<Item = (usize, usize)> {
+        let slots = (0..members.count).rev().zip(members.list());
+        slots.map(|(slot, &(member, _))| (slot, member)).filter(|&(_, member)| !self.binary[member].is_leaf())
+    }
+
+    /// The binary nodes that become children of the wide node in place of `binary`, the largest first.
+    fn members(&self, binary: usize) -> Members {
+        let mut members = Members { list: [(binary, self.binary[binary].half_area()); WIDTH], count: 1 };
+        while members.count < WIDTH {
+            let open = members.list().iter().position(|&(member, _)| !self.binary[member].is_leaf());
+            let Some(slot) = open else { break };
+            let first = self.binary[members.remove(slot)].first as usize;
+            for member in [first, first + 1] {
+                members.insert(member, self.binary[member].half_area());
+            }
+        }
+        members
+    }
+
+    /// What the node and its leaves count for.
+    fn alone(&self, binary: usize, members: &Members) -> BuildStats {
+        let mut stats = BuildStats { depth: 1, stack: members.count, ..BuildStats::default() };
+        stats.sah_cost = self.binary[binary].half_area();
+        for &(member, area) in members.list() {
+            let count = self.binary[member].count as usize;
+            if count > 0 {
+                stats.leaf_sizes[count] += 1;
+                stats.sah_cost += area * count.div_ceil(self.block) as f64;
+            }
+        }
+        stats
+    }
+}
+
+/// All children are pushed at once; when one is entered, the others wait.
+fn add_child(stats: &mut BuildStats, child: &BuildStats, count: usize) {
+    stats.depth = stats.depth.max(child.depth + 1);
+    stats.stack = stats.stack.max(count - 1 + child.stack);
+    stats.sah_cost += child.sah_cost;
+    for (all, some) in stats.leaf_sizes.iter_mut().zip(child.leaf_sizes) {
+        *all += some;
+    }
+}
+
+/// Children to be and their areas, the largest first.
+struct Members {
+    list: [(usize, f64); WIDTH],
+    count: usize,
+}
+
+impl Members {
+    fn list(&self) -> &[(usize, f64)] {
+        &self.list[..self.count]
+    }
+
+    fn remove(&mut self, slot: usize) -> usize {
+        let (member, _) = self.list[slot];
+        self.list.copy_within(slot + 1..self.count, slot);
+        self.count -= 1;
+        member
+    }
+
+    /// Behind those of equal area.
+    fn insert(&mut self, member: usize, area: f64) {
+        let slot = self.list().iter().position(|&(_, other)| other < area).unwrap_or(self.count);
+        self.list.copy_within(slot..self.count, slot + 1);
+        self.list[slot] = (member, area);
+        self.count += 1;
     }
 }

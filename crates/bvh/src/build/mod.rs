@@ -1,13 +1,23 @@
 //! From boxes to a tree: binned surface-area heuristic to a binary tree, then collapsed to eight wide.
 
+mod binary;
 mod binned;
+mod bins;
 mod collapse;
+mod item;
+mod partition;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
 
 use crate::Bvh;
-use fearless_simd::Level;
-use crate::node::Child;
-use juggler_math::{Aabb, Vec3};
-use std::ops::Range;
+use crate::node::LEAF_MAX;
+use binary::BinaryNode;
+use binned::Settings;
+use bins::Blocks;
+pub(crate) use item::Items;
+use juggler_math::Aabb;
+use std::convert::Infallible;
 
 /// Most items that a tree can hold.
 pub const MAX_ITEMS: usize = 1 << 28;
@@ -66,35 +76,9 @@ pub struct BuildStats {
     pub(crate) stack: usize,
 }
 
-/// An item on its way into the tree.
-#[derive(Clone, Copy)]
-struct Item {
-    bounds: Aabb,
-    index: u32,
-}
-
-impl Item {
-    fn center(&self, axis: usize) -> f32 {
-        self.bounds.min[axis] * 0.5 + self.bounds.max[axis] * 0.5
-    }
-}
-
-/// A node of the binary tree: a leaf of `count` items from `first`, or (`count` zero) the parent of the
-/// nodes `first` and `first + 1`.
-struct BinaryNode {
-    bounds: Aabb,
-    first: usize,
-    count: usize,
-}
-
-/// Half the surface area. In double precision, so that boxes of any finite size can be compared.
-fn half_area(bounds: &Aabb) -> f64 {
-    let side = |axis: usize| (f64::from(bounds.max[axis]) - f64::from(bounds.min[axis])).max(0.0);
-    side(0) * side(1) + side(1) * side(2) + side(2) * side(0)
-}
-
 impl Bvh {
-    /// Builds a tree over the boxes; item `i` has box `i`.
+    /// Builds a tree over the boxes; item `i` has box `i`. Runs on the threads of the current rayon pool;
+    /// the tree does not depend on their number.
     ///
     /// Empty boxes and boxes with a NaN hold nothing that a ray could meet and are left out of
     /// [`Bvh::order`]. Infinite bounds are cut to the largest finite float. At most [`MAX_ITEMS`] boxes are
@@ -106,41 +90,20 @@ impl Bvh {
     /// [`Bvh::build`] with the leaf's size and cost chosen.
     pub fn build_with(boxes: &[Aabb], options: &BuildOptions) -> Self {
         let boxes = &boxes[..boxes.len().min(MAX_ITEMS)];
-        let mut items = items_of(boxes);
-        let options = BuildOptions {
-            leaf_size: options.leaf_size.clamp(1, crate::node::LEAF_MAX),
-            block: options.block.clamp(1, crate::node::LEAF_MAX),
-            ..*options
-        };
-        let binary = binned::build(&mut items, &options);
-        let (nodes, mut stats) = collapse::collapse(&binary, options.block);
-        stats.items = items.len();
-        stats.left_out = boxes.len() - items.len();
-        let order = items.iter().map(|item| item.index).collect();
-        let bounds = binary.first().map_or(Aabb::EMPTY, |root| root.bounds);
-        Self { nodes, order, bounds, stats, level: if std::env::var("LV").is_ok() { Level::Avx2(Level::new().as_avx2().unwrap()) } else { Level::new() } }
+        let Ok(items) = Items::new(boxes.len(), |i| Ok::<_, Infallible>(boxes[i]));
+        Self::over(items, options)
     }
 
-    /// The tree with each leaf's range starting at the number of the leaf instead of a position; beside it
-    /// the ranges that the leaves had, and the order, which the tree has no more use for.
-    pub(crate) fn with_numbered_leaves(mut self) -> (Self, Vec<Range<u32>>, Vec<u32>) {
-        let mut leaves = Vec::new();
-        for node in &mut self.nodes {
-            for child in node.children[..node.count as usize].iter_mut().filter(|child| child.is_leaf()) {
-                let items = child.items();
-                *child = Child::leaf(leaves.len(), items.len());
-                leaves.push(items);
-            }
-        }
-        let order = std::mem::take(&mut self.order);
-        (self, leaves, order)
+    pub(crate) fn over(items: Items, options: &BuildOptions) -> Self {
+        let block = options.block.clamp(1, LEAF_MAX).next_power_of_two();
+        let leaf_size = options.leaf_size.clamp(1, LEAF_MAX);
+        let settings = Settings { leaf_size, block: Blocks(block.trailing_zeros() as i32) };
+        let left_out = items.left_out;
+        let (binary, order) = binned::build(items, &settings);
+        let (nodes, mut stats) = collapse::collapse(&binary, block);
+        stats.items = order.len();
+        stats.left_out = left_out;
+        let bounds = binary.first().map_or(Aabb::EMPTY, BinaryNode::aabb);
+        Self { nodes, order, bounds, stats, level: fearless_simd::Level::new() }
     }
-}
-
-fn items_of(boxes: &[Aabb]) -> Vec<Item> {
-    let largest = Vec3::splat(f32::MAX);
-    let usable = |b: &Aabb| b.min.cmple(b.max).all();
-    let cut = |b: &Aabb| Aabb { min: b.min.clamp(-largest, largest), max: b.max.clamp(-largest, largest) };
-    let numbered = boxes.iter().zip(0u32..).filter(|(b, _)| usable(b));
-    numbered.map(|(b, index)| Item { bounds: cut(b), index }).collect()
 }

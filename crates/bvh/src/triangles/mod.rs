@@ -1,14 +1,16 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
+mod build;
 mod meet;
 mod one;
 
 use crate::lanes::Lanes;
 use crate::node::Child;
+use crate::pages::Pages;
 use crate::slabs::Slabs;
 use crate::stack::Stack;
-use crate::triangle::has_area;
-use crate::{BuildOptions, BuildStats, Bvh, Quality};
+use crate::{BuildStats, Bvh};
+use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
 use juggler_math::{Aabb, Ray, Vec3};
 use meet::Corner;
@@ -70,31 +72,10 @@ impl std::error::Error for TriangleError {}
 pub struct TriangleBvh {
     /// Its leaves name one block each: `items.start` is the block, `items.len()` the triangles in it.
     bvh: Bvh,
-    blocks: Vec<Block>,
+    blocks: Pages<Block>,
 }
 
 impl TriangleBvh {
-    /// Builds the tree. A triangle is three numbers of `positions`. Triangles without area or with a vertex
-    /// that is not finite are never hit.
-    pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], quality: Quality) -> Result<Self, TriangleError> {
-        if triangles.len() > crate::MAX_ITEMS {
-            return Err(TriangleError::TooMany { triangles: triangles.len() });
-        }
-        let corners = |triangle: usize| corners(positions, triangles, triangle);
-        let boxes = (0..triangles.len()).map(|i| corners(i).map(bounds_of)).collect::<Result<Vec<_>, _>>()?;
-        let options = BuildOptions { block: LANES, ..quality.into() };
-        let (bvh, leaves, order) = Bvh::build_with(&boxes, &options).with_numbered_leaves();
-        let block = |leaf: &Range<u32>| {
-            let mut block = Block::EMPTY;
-            for (lane, &triangle) in order[leaf.start as usize..leaf.end as usize].iter().enumerate() {
-                block.set(lane, triangle, corners(triangle as usize)?);
-            }
-            Ok(block)
-        };
-        let blocks = leaves.iter().map(block).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { bvh, blocks })
-    }
-
     /// The closest hit; of hits at equal distance that on the triangle with the smallest number.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         dispatch!(self.bvh.level, simd => self.closest_one(simd, &mut Stack::new(), ray))
@@ -167,37 +148,12 @@ impl TriangleBvh {
 
     /// Bytes of memory that the tree and its triangles hold.
     pub fn bytes(&self) -> usize {
-        self.bvh.bytes() + size_of::<Vec<Block>>() + self.blocks.capacity() * size_of::<Block>()
-    }
-}
-
-fn corners(positions: &[Vec3], triangles: &[[u32; 3]], triangle: usize) -> Result<[Vec3; 3], TriangleError> {
-    let mut corners = [Vec3::ZERO; 3];
-    for (corner, &vertex) in corners.iter_mut().zip(&triangles[triangle]) {
-        let position = positions.get(vertex as usize);
-        let missing = TriangleError::NoSuchVertex { triangle, vertex, vertices: positions.len() };
-        *corner = *position.ok_or(missing)?;
-    }
-    Ok(corners)
-}
-
-/// The box of a triangle, empty when it can never be hit. A little larger than needed: the triangle's test
-/// rounds the vertices in the ray's frame by up to 4 half ulps of the triangle's size more than the box's
-/// test allows for, and a ray that the test gives to this triangle must not miss its box.
-fn bounds_of(corners: [Vec3; 3]) -> Aabb {
-    if !has_area(corners) {
-        return Aabb::EMPTY;
-    }
-    let bounds = Aabb::from_points(corners);
-    let bounds = bounds.grown(bounds.extent().max_element() * (4.0 * f32::EPSILON));
-    Aabb {
-        min: Vec3::from(bounds.min.to_array().map(f32::next_down)),
-        max: Vec3::from(bounds.max.to_array().map(f32::next_up)),
+        self.bvh.bytes() + self.blocks.bytes()
     }
 }
 
 /// The triangles of a leaf, coordinate by coordinate.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 struct Block {
     /// `vertices[corner][axis][lane]`.

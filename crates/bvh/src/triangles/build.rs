@@ -1,0 +1,104 @@
+//! From triangles to their tree: boxes, tree, then the blocks of the leaves.
+
+use super::{Block, LANES, TriangleBvh, TriangleError};
+use crate::build::Items;
+use crate::node::{Child, Node};
+use crate::pages::Pages;
+use crate::triangle::has_area;
+use crate::{BuildOptions, Bvh, MAX_ITEMS, Quality};
+use juggler_math::{Aabb, Vec3};
+use rayon::prelude::*;
+
+/// So many nodes or blocks are taken at once by a thread.
+const CHUNK: usize = 1 << 8;
+
+impl TriangleBvh {
+    /// Builds the tree. A triangle is three numbers of `positions`. Triangles without area or with a vertex
+    /// that is not finite are never hit. Runs on the threads of the current rayon pool; the tree does not
+    /// depend on their number.
+    pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], quality: Quality) -> Result<Self, TriangleError> {
+        if triangles.len() > MAX_ITEMS {
+            return Err(TriangleError::TooMany { triangles: triangles.len() });
+        }
+        let mesh = Mesh { positions, triangles };
+        let items = Items::new(triangles.len(), |triangle| mesh.corners(triangle).map(bounds_of))?;
+        let mut bvh = Bvh::over(items, &BuildOptions { block: LANES, ..quality.into() });
+        let leaves = number_leaves(&mut bvh.nodes);
+        // The tree has no more use for the order; the triangles' numbers stand in the blocks.
+        let order = std::mem::take(&mut bvh.order);
+        let mut blocks = Pages::zeroed(leaves.len());
+        blocks.par_iter_mut().zip(&leaves).with_min_len(CHUNK).try_for_each(|(block, leaf)| {
+            *block = Block::EMPTY;
+            let items = leaf.items();
+            for (lane, &triangle) in order[items.start as usize..items.end as usize].iter().enumerate() {
+                block.set(lane, triangle, mesh.corners(triangle as usize)?);
+            }
+            Ok(())
+        })?;
+        Ok(Self { bvh, blocks })
+    }
+}
+
+#[cfg(test)]
+impl TriangleBvh {
+    pub(crate) fn same_bits(&self, other: &Self) -> bool {
+        *self.bvh.nodes == *other.bvh.nodes && *self.blocks == *other.blocks && self.bvh.stats == other.bvh.stats
+    }
+}
+
+/// Makes each leaf's range start at the number of the leaf instead of a position; returns the leaves as they
+/// were.
+fn number_leaves(nodes: &mut [Node]) -> Vec<Child> {
+    let leaves = |node: &Node| node.children[..node.count as usize].iter().filter(|child| child.is_leaf()).count();
+    let counts: Vec<usize> = nodes.par_chunks(CHUNK).map(|nodes| nodes.iter().map(leaves).sum()).collect();
+    let mut old = vec![Child::ROOT; counts.iter().sum()];
+    let (mut rest, mut start) = (&mut old[..], 0);
+    let mut jobs = Vec::with_capacity(counts.len());
+    for (nodes, count) in nodes.chunks_mut(CHUNK).zip(counts) {
+        let (list, after) = rest.split_at_mut(count);
+        rest = after;
+        jobs.push((nodes, list, start));
+        start += count;
+    }
+    jobs.into_par_iter().for_each(|(nodes, list, start)| {
+        let children = nodes.iter_mut().flat_map(|node| &mut node.children[..node.count as usize]);
+        for ((child, old), number) in children.filter(|child| child.is_leaf()).zip(list).zip(start..) {
+            *old = *child;
+            *child = Child::leaf(number, child.items().len());
+        }
+    });
+    old
+}
+
+#[derive(Clone, Copy)]
+struct Mesh<'a> {
+    positions: &'a [Vec3],
+    triangles: &'a [[u32; 3]],
+}
+
+impl Mesh<'_> {
+    fn corners(&self, triangle: usize) -> Result<[Vec3; 3], TriangleError> {
+        let mut corners = [Vec3::ZERO; 3];
+        for (corner, &vertex) in corners.iter_mut().zip(&self.triangles[triangle]) {
+            let vertices = self.positions.len();
+            let missing = || TriangleError::NoSuchVertex { triangle, vertex, vertices };
+            *corner = *self.positions.get(vertex as usize).ok_or_else(missing)?;
+        }
+        Ok(corners)
+    }
+}
+
+/// The box of a triangle, empty when it can never be hit. A little larger than needed: the triangle's test
+/// rounds the vertices in the ray's frame by up to 4 half ulps of the triangle's size more than the box's
+/// test allows for, and a ray that the test gives to this triangle must not miss its box.
+fn bounds_of(corners: [Vec3; 3]) -> Aabb {
+    if !has_area(corners) {
+        return Aabb::EMPTY;
+    }
+    let bounds = Aabb::from_points(corners);
+    let bounds = bounds.grown(bounds.extent().max_element() * (4.0 * f32::EPSILON));
+    Aabb {
+        min: Vec3::from(bounds.min.to_array().map(f32::next_down)),
+        max: Vec3::from(bounds.max.to_array().map(f32::next_up)),
+    }
+}
