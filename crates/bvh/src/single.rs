@@ -63,23 +63,22 @@ impl Bvh {
         let (nodes, base) = (&*self.nodes, stack.len());
         let mut current = from;
         loop {
-            let next = if current.is_leaf() {
-                leaf.closest(lane, ray, current.items());
-                slabs.t_max = cull_distance(ray.t_max);
-                None
-            } else {
+            while !current.is_leaf() {
                 let node = &nodes[current.0 as usize];
                 let (mask, enter) = node.test(simd, &slabs);
-                //PF self.prefetch(node, mask, leaf);
-                nearest(node, mask, &enter.into(), stack)
-            };
-            current = match next {
-                Some(child) => child,
-                None => match next_below(stack, base, slabs.t_max) {
-                    Some(child) => child,
-                    None => return,
-                },
-            };
+                let next = nearest(node, mask, &enter.into(), stack);
+                let Some(next) = next.or_else(
+                    #[inline(always)]
+                    || next_below(stack, base, slabs.t_max),
+                ) else {
+                    return;
+                };
+                current = next;
+            }
+            leaf.closest(lane, ray, current.items());
+            slabs.t_max = cull_distance(ray.t_max);
+            let Some(next) = next_below(stack, base, slabs.t_max) else { return };
+            current = next;
         }
     }
 
@@ -112,25 +111,24 @@ impl Bvh {
         let (nodes, base) = (&*self.nodes, stack.len());
         let mut current = from;
         loop {
-            let next = if current.is_leaf() {
-                if leaf.any(lane, ray, current.items()) {
-                    stack.truncate(base);
-                    return true;
-                }
-                None
-            } else {
+            while !current.is_leaf() {
                 let node = &nodes[current.0 as usize];
                 let (mask, _) = node.test(simd, slabs);
-                //PF self.prefetch(node, mask, leaf);
-                first(node, mask, stack)
-            };
-            current = match next {
-                Some(child) => child,
-                None => match next_below(stack, base, f32::INFINITY) {
-                    Some(child) => child,
-                    None => return false,
-                },
-            };
+                let next = first(node, mask, stack);
+                let Some(next) = next.or_else(
+                    #[inline(always)]
+                    || next_below(stack, base, f32::INFINITY),
+                ) else {
+                    return false;
+                };
+                current = next;
+            }
+            if leaf.any(lane, ray, current.items()) {
+                stack.truncate(base);
+                return true;
+            }
+            let Some(next) = next_below(stack, base, f32::INFINITY) else { return false };
+            current = next;
         }
     }
 }
