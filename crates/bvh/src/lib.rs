@@ -42,6 +42,7 @@ mod inspect;
 mod lanes;
 mod node;
 mod packet;
+mod ray_lanes;
 mod pages;
 mod single;
 mod slabs;
@@ -95,6 +96,25 @@ pub trait Leaf {
     /// A leaf is shown whenever its box is entered at or before `t_max`, so that of hits at equal distance
     /// the implementor can keep the one with the smallest item number, whatever the order of the visits.
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>);
+
+    /// [`Leaf::closest`] for several rays of a packet: those whose bit in `active` is set. Ray `i` of the slice is
+    /// lane `first + i`.
+    #[inline(always)]
+    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
+        for lane in lanes::Bits(active) {
+            self.closest(first + lane, &mut rays[lane], items.clone());
+        }
+    }
+
+    /// [`Leaf::any`] for several rays of a packet: a bit for each that is occluded.
+    #[inline(always)]
+    fn any_many(&mut self, first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {
+        let mut found = 0;
+        for lane in lanes::Bits(active) {
+            found |= u32::from(self.any(first + lane, &rays[lane], items.clone())) << lane;
+        }
+        found
+    }
 
     /// Brings what [`Leaf::closest`] and [`Leaf::any`] will look at closer, where the implementor can.
     fn prefetch(&self, _items: Range<u32>) {}

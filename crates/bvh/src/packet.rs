@@ -1,18 +1,189 @@
-//! stub
-use crate::node::WIDTH;
+//! Up to eight coherent rays together: one interval test a node, then each ray against the boxes that the
+//! interval leaves.
+//!
+//! Neighbouring rays are almost one ray; where their interval misses all children of the root, all of them
+//! have missed, for the price of one. The interval's test never misses what one of its rays meets. Where few
+//! rays are left in a box they go on alone.
+
+use crate::lanes::{Bits, Lanes};
+use crate::node::{Child, WIDTH};
+use crate::ray_lanes::RayLanes;
+use crate::slabs::{Bundle, Slabs};
+use crate::stack::{Stack, distance, entry};
 use crate::{Bvh, Leaf};
+use fearless_simd::dispatch;
 use juggler_math::Ray;
 
 /// Most rays that are traced together.
 pub const PACKET: usize = WIDTH;
+/// With so few rays left in a box they go on alone.
+const FEW: u32 = 2;
 
 impl Bvh {
-    /// x
+    /// [`Bvh::closest`] for rays that go the same way; a ray's lane is its number in the slice. More than
+    /// [`PACKET`] rays are taken in groups of as many. Rays that do not share an octant are traced alone.
     pub fn closest_packet(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
-        self.closest_batch(rays, leaf);
+        dispatch!(self.level, simd => self.closest_groups(simd, rays, leaf));
     }
-    /// x
+
+    /// [`Bvh::any`] for rays that go the same way; see [`Bvh::closest_packet`] and [`Bvh::any_batch`].
     pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
-        self.any_batch(rays, occluded, leaf);
+        dispatch!(self.level, simd => self.any_groups(simd, rays, occluded, leaf));
+    }
+
+    #[inline(always)]
+    fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
+        let mut stack = Stack::new();
+        for (group, rays) in rays.chunks_mut(PACKET).enumerate() {
+            match Bundle::of_rays(rays) {
+                Some(bundle) => {
+                    let lanes = RayLanes::new(rays);
+                    self.closest_group(simd, &mut stack, group * PACKET, rays, bundle, lanes, leaf);
+                }
+                None => {
+                    for (lane, ray) in rays.iter_mut().enumerate() {
+                        let slabs = Slabs::of_ray(simd, ray);
+                        self.closest_below(simd, Child::ROOT, &mut stack, group * PACKET + lane, ray, slabs, leaf);
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
+        let mut stack = Stack::new();
+        occluded.fill(false);
+        for (group, (rays, occluded)) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)).enumerate() {
+            let rays = &rays[..rays.len().min(occluded.len())];
+            let found = match Bundle::of_rays(rays) {
+                Some(bundle) => {
+                    let lanes = RayLanes::new(rays);
+                    self.any_group(simd, &mut stack, group * PACKET, rays, &bundle, &lanes, leaf)
+                }
+                None => self.any_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),
+            };
+            for lane in Bits(found) {
+                occluded[lane] = true;
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
+    pub(crate) fn closest_group<S: Lanes>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        base: usize,
+        rays: &mut [Ray],
+        mut bundle: Bundle,
+        mut lanes: RayLanes,
+        leaf: &mut impl Leaf,
+    ) {
+        let mut node = Child::ROOT;
+        loop {
+            self.push_slots(simd, node, &bundle, stack);
+            node = loop {
+                let Some(top) = stack.pop() else { return };
+                if distance(top) > bundle.t_max {
+                    continue;
+                }
+                let (parent, slot) = (&self.nodes[top as u32 as usize / WIDTH], top as usize % WIDTH);
+                let child = parent.children[slot];
+                let active = lanes.test(simd, &parent.bounds, slot);
+                if !child.is_leaf() && active.count_ones() > FEW {
+                    break child;
+                }
+                if active == 0 {
+                    continue;
+                }
+                if child.is_leaf() {
+                    leaf.closest_many(base, active, rays, child.items());
+                } else {
+                    for lane in Bits(active) {
+                        let slabs = Slabs::of_ray(simd, &rays[lane]);
+                        self.closest_below(simd, child, stack, base + lane, &mut rays[lane], slabs, leaf);
+                    }
+                }
+                for lane in Bits(active) {
+                    lanes.shorten(lane, rays[lane].t_max);
+                }
+                bundle.t_max = lanes.t_max();
+            };
+        }
+    }
+
+    /// Pushes the places (node and slot in one number) of the children that are met, the nearest last.
+    #[inline(always)]
+    fn push_slots<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut Stack) {
+        let (mask, enter) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
+        let enter: [f32; WIDTH] = enter.into();
+        let base = stack.len();
+        for slot in Bits(mask) {
+            stack.insert(base, entry(enter[slot], node.0 * WIDTH as u32 + slot as u32));
+        }
+    }
+
+    /// Which of the rays hit something (bit per lane).
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
+    pub(crate) fn any_group<S: Lanes>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        base: usize,
+        rays: &[Ray],
+        bundle: &Bundle,
+        lanes: &RayLanes,
+        leaf: &mut impl Leaf,
+    ) -> u32 {
+        let all = (1u32 << rays.len()) - 1;
+        let mut found = 0;
+        let mut node = Child::ROOT;
+        loop {
+            self.push_slots(simd, node, bundle, stack);
+            node = loop {
+                let Some(top) = stack.pop() else { return found };
+                let (parent, slot) = (&self.nodes[top as u32 as usize / WIDTH], top as usize % WIDTH);
+                let child = parent.children[slot];
+                let active = lanes.test(simd, &parent.bounds, slot) & !found;
+                if !child.is_leaf() && active.count_ones() > FEW {
+                    break child;
+                }
+                found |= match child.is_leaf() {
+                    _ if active == 0 => continue,
+                    true => leaf.any_many(base, active, rays, child.items()),
+                    false => self.any_alone(simd, child, stack, base, active, rays, leaf),
+                };
+                if found == all {
+                    stack.truncate(0);
+                    return found;
+                }
+            };
+        }
+    }
+
+    /// Which of the active rays, each on its own, hit something in the subtree at `from`.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
+    fn any_alone<S: Lanes>(
+        &self,
+        simd: S,
+        from: Child,
+        stack: &mut Stack,
+        base: usize,
+        active: u32,
+        rays: &[Ray],
+        leaf: &mut impl Leaf,
+    ) -> u32 {
+        let mut found = 0;
+        for (lane, ray) in rays.iter().enumerate() {
+            if active >> lane & 1 != 0 {
+                let slabs = Slabs::of_ray(simd, ray);
+                found |= u32::from(self.any_below(simd, from, stack, base + lane, ray, &slabs, leaf)) << lane;
+            }
+        }
+        found
     }
 }

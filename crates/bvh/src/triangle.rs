@@ -96,14 +96,20 @@ impl Shear {
 
     /// The distance, but not before the ray's line enters the box of the triangle as the traversal computes it.
     #[inline(always)]
-    pub fn clamp(&self, t: f32, [a, b, c]: [[f32; 3]; 3]) -> f32 {
+    pub fn clamp(&self, t: f32, corners: [[f32; 3]; 3]) -> f32 {
         let mut enter = t;
-        for k in 0..3 {
-            // Looked up, not chosen: the signs are hard to guess for the processor.
-            let sides = [min(a[k], min(b[k], c[k])), max(a[k], max(b[k], c[k]))];
-            enter = max((sides[self.side[k] & 1] - self.origin[k]) * self.inverse[k], enter);
+        for axis in 0..3 {
+            let near = Self::near(&corners, axis, self.side[axis]);
+            enter = max((near - self.origin[axis]) * self.inverse[axis], enter);
         }
         enter
+    }
+
+    /// Least (side 0) or largest coordinate of the corners along an axis. Looked up, not chosen: the signs are
+    /// hard to guess for the processor.
+    #[inline(always)]
+    pub fn near([a, b, c]: &[[f32; 3]; 3], axis: usize, side: usize) -> f32 {
+        [min(a[axis], min(b[axis], c[axis])), max(a[axis], max(b[axis], c[axis]))][side & 1]
     }
 }
 

@@ -1,18 +1,22 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
 mod build;
+mod many;
 mod meet;
 mod one;
 
 use crate::lanes::Lanes;
 use crate::node::Child;
 use crate::pages::Pages;
-use crate::slabs::Slabs;
+use crate::packet::PACKET;
+use crate::ray_lanes::RayLanes;
+use crate::slabs::{Bundle, Slabs};
 use crate::stack::Stack;
 use crate::{BuildStats, Bvh};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
 use juggler_math::{Aabb, Ray, Vec3};
+use many::Many;
 use meet::Corner;
 use one::One;
 use std::fmt;
@@ -104,12 +108,53 @@ impl TriangleBvh {
     /// [`TriangleBvh::closest`] for coherent rays, see [`Bvh::closest_packet`]. The answers replace what
     /// `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        self.closest_batch(rays, hits);
+        let count = rays.len().min(hits.len());
+        dispatch!(self.bvh.level, simd => self.closest_groups(simd, &mut rays[..count], &mut hits[..count]));
     }
 
     /// [`TriangleBvh::any`] for coherent rays, see [`Bvh::any_packet`].
     pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.any_batch(rays, occluded);
+        let count = rays.len().min(occluded.len());
+        dispatch!(self.bvh.level, simd => self.any_groups(simd, &rays[..count], &mut occluded[..count]));
+    }
+
+    #[inline(always)]
+    fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let stack = &mut Stack::new();
+        hits.fill(None);
+        for (rays, hits) in rays.chunks_mut(PACKET).zip(hits.chunks_mut(PACKET)) {
+            if let Some(bundle) = Bundle::of_rays(rays) {
+                let lanes = RayLanes::new(rays);
+                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, hits) {
+                    self.bvh.closest_group(simd, stack, 0, rays, bundle, lanes, &mut many);
+                    continue;
+                }
+            }
+            for (ray, hit) in rays.iter_mut().zip(hits) {
+                *hit = self.closest_one(simd, stack, ray);
+                ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
+        let stack = &mut Stack::new();
+        for (rays, occluded) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)) {
+            if let Some(bundle) = Bundle::of_rays(rays) {
+                let lanes = RayLanes::new(rays);
+                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &mut []) {
+                    let found = self.bvh.any_group(simd, stack, 0, rays, &bundle, &lanes, &mut many);
+                    for (lane, occluded) in occluded.iter_mut().enumerate() {
+                        *occluded = found >> lane & 1 != 0;
+                    }
+                    continue;
+                }
+            }
+            for (ray, occluded) in rays.iter().zip(occluded) {
+                *occluded = self.any_one(simd, stack, ray);
+            }
+        }
     }
 
     /// [`TriangleBvh::closest`] for any number of unrelated rays, see [`Bvh::closest_batch`]. The answers
