@@ -9,7 +9,8 @@ use crate::lanes::{Bits, Lanes};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::{Bundle, Slabs};
-use crate::stack::{Stack, distance, entry};
+use crate::single::nearest;
+use crate::stack::{Stack, distance};
 use crate::{Bvh, Leaf};
 use fearless_simd::dispatch;
 use juggler_math::Ray;
@@ -37,15 +38,10 @@ impl Bvh {
         for (group, rays) in rays.chunks_mut(PACKET).enumerate() {
             match Bundle::of_rays(rays) {
                 Some(bundle) => {
-                    let lanes = RayLanes::new(rays);
+                    let lanes = &mut RayLanes::new(simd, rays);
                     self.closest_group(simd, &mut stack, group * PACKET, rays, bundle, lanes, leaf);
                 }
-                None => {
-                    for (lane, ray) in rays.iter_mut().enumerate() {
-                        let slabs = Slabs::of_ray(simd, ray);
-                        self.closest_below(simd, Child::ROOT, &mut stack, group * PACKET + lane, ray, slabs, leaf);
-                    }
-                }
+                None => self.closest_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),
             }
         }
     }
@@ -58,7 +54,7 @@ impl Bvh {
             let rays = &rays[..rays.len().min(occluded.len())];
             let found = match Bundle::of_rays(rays) {
                 Some(bundle) => {
-                    let lanes = RayLanes::new(rays);
+                    let lanes = RayLanes::new(simd, rays);
                     self.any_group(simd, &mut stack, group * PACKET, rays, &bundle, &lanes, leaf)
                 }
                 None => self.any_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),
@@ -69,6 +65,7 @@ impl Bvh {
         }
     }
 
+    /// Traces the rays of a group as one, each from the leaves on and where few are left alone.
     #[allow(clippy::too_many_arguments)]
     #[inline(always)]
     pub(crate) fn closest_group<S: Lanes>(
@@ -78,51 +75,76 @@ impl Bvh {
         base: usize,
         rays: &mut [Ray],
         mut bundle: Bundle,
-        mut lanes: RayLanes,
+        lanes: &mut RayLanes,
         leaf: &mut impl Leaf,
     ) {
-        let mut node = Child::ROOT;
+        let nodes = &*self.nodes;
+        let mut next = self.nearest_slot(simd, Child::ROOT, &bundle, stack);
         loop {
-            self.push_slots(simd, node, &bundle, stack);
-            node = loop {
-                let Some(top) = stack.pop() else { return };
-                if distance(top) > bundle.t_max {
-                    continue;
-                }
-                let (parent, slot) = (&self.nodes[top as u32 as usize / WIDTH], top as usize % WIDTH);
-                let child = parent.children[slot];
-                let active = lanes.test(simd, &parent.bounds, slot);
-                if !child.is_leaf() && active.count_ones() > FEW {
-                    break child;
-                }
-                if active == 0 {
-                    continue;
-                }
-                if child.is_leaf() {
-                    leaf.closest_many(base, active, rays, child.items());
-                } else {
-                    for lane in Bits(active) {
-                        let slabs = Slabs::of_ray(simd, &rays[lane]);
-                        self.closest_below(simd, child, stack, base + lane, &mut rays[lane], slabs, leaf);
-                    }
-                }
-                for lane in Bits(active) {
-                    lanes.shorten(lane, rays[lane].t_max);
-                }
-                bundle.t_max = lanes.t_max();
+            let place = match next {
+                Some(place) => place as usize,
+                None => match stack.pop() {
+                    Some(top) if distance(top) > bundle.t_max => continue,
+                    Some(top) => top as u32 as usize,
+                    None => return,
+                },
             };
+            let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
+            let child = parent.children[slot];
+            if !child.is_leaf() {
+                next = self.nearest_slot(simd, child, &bundle, stack);
+                continue;
+            }
+            next = None;
+            let active = lanes.test(simd, &parent.bounds, slot);
+            if active == 0 {
+                continue;
+            }
+            leaf.closest_many(base, active, rays, child.items());
+            for lane in Bits(active) {
+                lanes.shorten(lane, rays[lane].t_max);
+            }
+            bundle.t_max = lanes.t_max();
         }
     }
 
-    /// Pushes the places (node and slot in one number) of the children that are met, the nearest last.
+    /// The nearest child that the bundle may meet, as a place (node and slot in one number); pushes the others.
     #[inline(always)]
-    fn push_slots<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut Stack) {
+    fn nearest_slot<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut Stack) -> Option<u32> {
         let (mask, enter) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
-        let enter: [f32; WIDTH] = enter.into();
-        let base = stack.len();
-        for slot in Bits(mask) {
-            stack.insert(base, entry(enter[slot], node.0 * WIDTH as u32 + slot as u32));
-        }
+        nearest(
+            mask,
+            &enter.into(),
+            stack,
+            #[inline(always)]
+            |slot| node.0 * WIDTH as u32 + slot as u32,
+        )
+    }
+
+    /// Traces the active rays one by one through the subtree at `from`.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(never)]
+    fn closest_alone<S: Lanes>(
+        &self,
+        simd: S,
+        from: Child,
+        stack: &mut Stack,
+        base: usize,
+        active: u32,
+        rays: &mut [Ray],
+        leaf: &mut impl Leaf,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for (lane, ray) in rays.iter_mut().enumerate() {
+                    if active >> lane & 1 != 0 {
+                        let slabs = Slabs::of_ray(simd, ray);
+                        self.closest_below(simd, from, stack, base + lane, ray, slabs, leaf);
+                    }
+                }
+            },
+        );
     }
 
     /// Which of the rays hit something (bit per lane).
@@ -138,35 +160,40 @@ impl Bvh {
         lanes: &RayLanes,
         leaf: &mut impl Leaf,
     ) -> u32 {
+        let nodes = &*self.nodes;
         let all = (1u32 << rays.len()) - 1;
         let mut found = 0;
-        let mut node = Child::ROOT;
+        let mut next = self.nearest_slot(simd, Child::ROOT, bundle, stack);
         loop {
-            self.push_slots(simd, node, bundle, stack);
-            node = loop {
-                let Some(top) = stack.pop() else { return found };
-                let (parent, slot) = (&self.nodes[top as u32 as usize / WIDTH], top as usize % WIDTH);
-                let child = parent.children[slot];
-                let active = lanes.test(simd, &parent.bounds, slot) & !found;
-                if !child.is_leaf() && active.count_ones() > FEW {
-                    break child;
-                }
-                found |= match child.is_leaf() {
-                    _ if active == 0 => continue,
-                    true => leaf.any_many(base, active, rays, child.items()),
-                    false => self.any_alone(simd, child, stack, base, active, rays, leaf),
-                };
-                if found == all {
-                    stack.truncate(0);
-                    return found;
-                }
+            let place = match next.or_else(|| stack.pop().map(|top| top as u32)) {
+                Some(place) => place as usize,
+                None => return found,
             };
+            next = None;
+            let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
+            let child = parent.children[slot];
+            let active = lanes.test(simd, &parent.bounds, slot) & all & !found;
+            if active == 0 {
+                continue;
+            }
+            if child.is_leaf() {
+                found |= leaf.any_many(base, active, rays, child.items());
+            } else if active.count_ones() > FEW {
+                next = self.nearest_slot(simd, child, bundle, stack);
+                continue;
+            } else {
+                found |= self.any_alone(simd, child, stack, base, active, rays, leaf);
+            }
+            if found == all {
+                stack.truncate(0);
+                return found;
+            }
         }
     }
 
     /// Which of the active rays, each on its own, hit something in the subtree at `from`.
     #[allow(clippy::too_many_arguments)]
-    #[inline(always)]
+    #[inline(never)]
     fn any_alone<S: Lanes>(
         &self,
         simd: S,
@@ -177,13 +204,19 @@ impl Bvh {
         rays: &[Ray],
         leaf: &mut impl Leaf,
     ) -> u32 {
-        let mut found = 0;
-        for (lane, ray) in rays.iter().enumerate() {
-            if active >> lane & 1 != 0 {
-                let slabs = Slabs::of_ray(simd, ray);
-                found |= u32::from(self.any_below(simd, from, stack, base + lane, ray, &slabs, leaf)) << lane;
-            }
-        }
-        found
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut found = 0;
+                for (lane, ray) in rays.iter().enumerate() {
+                    if active >> lane & 1 != 0 {
+                        let slabs = Slabs::of_ray(simd, ray);
+                        let hit = self.any_below(simd, from, stack, base + lane, ray, &slabs, leaf);
+                        found |= u32::from(hit) << lane;
+                    }
+                }
+                found
+            },
+        )
     }
 }

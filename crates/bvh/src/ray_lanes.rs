@@ -2,7 +2,7 @@
 
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
-use crate::slabs::{WIDEN, cull_distance, inverses};
+use crate::slabs::{WIDEN, cull_distance};
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
@@ -11,7 +11,7 @@ use juggler_math::Ray;
 pub(crate) struct RayLanes {
     pub origin: [[f32; WIDTH]; 3],
     pub direction: [[f32; WIDTH]; 3],
-    /// As [`inverses`] gives them.
+    /// Of the directions, NaN where one overflows though the component is not zero.
     pub inverse: [[f32; WIDTH]; 3],
     pub t_min: [f32; WIDTH],
     /// In the sense of [`cull_distance`].
@@ -23,7 +23,7 @@ pub(crate) struct RayLanes {
 impl RayLanes {
     /// Lanes without a ray meet nothing.
     #[inline(always)]
-    pub fn new(rays: &[Ray]) -> Self {
+    pub fn new<S: Lanes>(simd: S, rays: &[Ray]) -> Self {
         let mut lanes = Self {
             origin: [[0.0; WIDTH]; 3],
             direction: [[1.0; WIDTH]; 3],
@@ -33,16 +33,18 @@ impl RayLanes {
             signs: 0,
         };
         for (lane, ray) in rays.iter().take(WIDTH).enumerate() {
-            let inverse = inverses(ray.direction);
             for axis in 0..3 {
                 lanes.origin[axis][lane] = ray.origin[axis];
                 lanes.direction[axis][lane] = ray.direction[axis];
-                lanes.inverse[axis][lane] = inverse[axis];
             }
             lanes.t_min[lane] = ray.t_min;
             lanes.t_max[lane] = cull_distance(ray.t_max);
         }
         for axis in 0..3 {
+            let direction = simd.load(&lanes.direction[axis]);
+            let inverse = simd.splat(1.0) / direction;
+            let overflows = inverse.abs().simd_gt(f32::MAX) & !direction.simd_eq(0.0);
+            lanes.inverse[axis] = overflows.select(simd.splat(f32::NAN), inverse).into();
             lanes.signs |= u32::from(lanes.direction[axis][0].is_sign_negative()) << axis;
         }
         lanes

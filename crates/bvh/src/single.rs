@@ -66,14 +66,20 @@ impl Bvh {
             while !current.is_leaf() {
                 let node = &nodes[current.0 as usize];
                 let (mask, enter) = node.test(simd, &slabs);
-                let next = nearest(node, mask, &enter.into(), stack);
-                let Some(next) = next.or_else(
+                let next = nearest(
+                    mask,
+                    &enter.into(),
+                    stack,
                     #[inline(always)]
-                    || next_below(stack, base, slabs.t_max),
-                ) else {
-                    return;
+                    |slot| node.children[slot].0,
+                );
+                current = match next {
+                    Some(word) => Child(word),
+                    None => match next_below(stack, base, slabs.t_max) {
+                        Some(child) => child,
+                        None => return,
+                    },
                 };
-                current = next;
             }
             leaf.closest(lane, ray, current.items());
             slabs.t_max = cull_distance(ray.t_max);
@@ -159,41 +165,39 @@ fn next_below(stack: &mut Stack, base: usize, t_max: f32) -> Option<Child> {
     None
 }
 
-/// The nearest of the children that are met; the others go onto the stack, farthest first. One and two are
-/// the rule and stand apart: branches let the processor guess the next node and fetch it before the boxes are
-/// tested, selections would not.
+/// The word of the nearest of the children that are met; the others go onto the stack, farthest first. One and
+/// two are the rule and stand apart: branches let the processor guess the next node and fetch it before the
+/// boxes are tested, selections would not.
 #[inline(always)]
-fn nearest(node: &Node, mut mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
+pub(crate) fn nearest(mut mask: u32, enter: &[f32; 8], stack: &mut Stack, word: impl Fn(usize) -> u32) -> Option<u32> {
     if mask == 0 {
         return None;
     }
-    let mut next = || {
-        let slot = mask.trailing_zeros() as usize & 7;
-        mask &= mask - 1;
-        (entry(enter[slot], node.children[slot].0), mask == 0)
-    };
-    let (first, last) = next();
-    if last {
-        return Some(Child(first as u32));
+    let slot = mask.trailing_zeros() as usize & 7;
+    mask &= mask - 1;
+    if mask == 0 {
+        return Some(word(slot));
     }
-    let (second, last) = next();
-    if last {
+    let first = entry(enter[slot], word(slot));
+    let slot = mask.trailing_zeros() as usize & 7;
+    mask &= mask - 1;
+    let second = entry(enter[slot], word(slot));
+    if mask == 0 {
         if first <= second {
             stack.push(second);
-            return Some(Child(first as u32));
+            return Some(first as u32);
         }
         stack.push(first);
-        return Some(Child(second as u32));
+        return Some(second as u32);
     }
-    let (near, far) = if first <= second { (first, second) } else { (second, first) };
     let base = stack.len();
+    let (near, far) = if first <= second { (first, second) } else { (second, first) };
     stack.push(far);
     stack.push(near);
-    loop {
-        let (more, last) = next();
-        stack.insert(base, more);
-        if last {
-            return Some(Child(stack.pop()? as u32));
-        }
+    while mask != 0 {
+        let slot = mask.trailing_zeros() as usize & 7;
+        mask &= mask - 1;
+        stack.insert(base, entry(enter[slot], word(slot)));
     }
+    stack.pop().map(|top| top as u32)
 }

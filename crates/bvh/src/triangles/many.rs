@@ -168,12 +168,6 @@ impl<S: Lanes> Leaf for Many<'_, S> {
 
     #[inline(always)]
     fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
-        if (active.count_ones() as usize) < items.len() {
-            for lane in Bits(active) {
-                self.closest(lane, &mut rays[lane], items.clone());
-            }
-            return;
-        }
         let _ = first;
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
@@ -189,12 +183,6 @@ impl<S: Lanes> Leaf for Many<'_, S> {
     #[inline(always)]
     fn any_many(&mut self, _first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {
         let mut found = 0;
-        if (active.count_ones() as usize) < items.len() {
-            for lane in Bits(active) {
-                found |= u32::from(self.any(lane, &rays[lane], items.clone())) << lane;
-            }
-            return found;
-        }
         let block = &self.blocks[items.start as usize];
         for number in 0..items.len() {
             found |= self.triangle(block, number, active & !found).0;

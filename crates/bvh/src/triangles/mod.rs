@@ -124,14 +124,14 @@ impl TriangleBvh {
         hits.fill(None);
         for (rays, hits) in rays.chunks_mut(PACKET).zip(hits.chunks_mut(PACKET)) {
             if let Some(bundle) = Bundle::of_rays(rays) {
-                let lanes = RayLanes::new(rays);
+                let mut lanes = RayLanes::new(simd, rays);
                 if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, hits) {
-                    self.bvh.closest_group(simd, stack, 0, rays, bundle, lanes, &mut many);
+                    self.bvh.closest_group(simd, stack, 0, rays, bundle, &mut lanes, &mut many);
                     continue;
                 }
             }
             for (ray, hit) in rays.iter_mut().zip(hits) {
-                *hit = self.closest_one(simd, stack, ray);
+                *hit = self.closest(ray);
                 ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
             }
         }
@@ -142,7 +142,7 @@ impl TriangleBvh {
         let stack = &mut Stack::new();
         for (rays, occluded) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)) {
             if let Some(bundle) = Bundle::of_rays(rays) {
-                let lanes = RayLanes::new(rays);
+                let lanes = RayLanes::new(simd, rays);
                 if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &mut []) {
                     let found = self.bvh.any_group(simd, stack, 0, rays, &bundle, &lanes, &mut many);
                     for (lane, occluded) in occluded.iter_mut().enumerate() {
@@ -152,7 +152,7 @@ impl TriangleBvh {
                 }
             }
             for (ray, occluded) in rays.iter().zip(occluded) {
-                *occluded = self.any_one(simd, stack, ray);
+                *occluded = self.any(ray);
             }
         }
     }
