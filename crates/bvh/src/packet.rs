@@ -36,10 +36,9 @@ impl Bvh {
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
         let mut stack = Stack::new();
         for (group, rays) in rays.chunks_mut(PACKET).enumerate() {
-            match Bundle::of_rays(rays) {
-                Some(bundle) => {
-                    let lanes = &mut RayLanes::new(simd, rays);
-                    self.closest_group(simd, &mut stack, group * PACKET, rays, bundle, lanes, leaf);
+            match RayLanes::of_rays(simd, rays) {
+                Some((mut lanes, bundle)) => {
+                    self.closest_group(simd, &mut stack, group * PACKET, rays, bundle, &mut lanes, leaf);
                 }
                 None => self.closest_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),
             }
@@ -52,9 +51,8 @@ impl Bvh {
         occluded.fill(false);
         for (group, (rays, occluded)) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)).enumerate() {
             let rays = &rays[..rays.len().min(occluded.len())];
-            let found = match Bundle::of_rays(rays) {
-                Some(bundle) => {
-                    let lanes = RayLanes::new(simd, rays);
+            let found = match RayLanes::of_rays(simd, rays) {
+                Some((lanes, bundle)) => {
                     self.any_group(simd, &mut stack, group * PACKET, rays, &bundle, &lanes, leaf)
                 }
                 None => self.any_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),

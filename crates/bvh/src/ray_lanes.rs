@@ -2,7 +2,8 @@
 
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
-use crate::slabs::{WIDEN, cull_distance};
+use crate::slabs::{Bundle, SLACK, WIDEN, cull_distance};
+use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
@@ -21,33 +22,50 @@ pub(crate) struct RayLanes {
 }
 
 impl RayLanes {
-    /// Lanes without a ray meet nothing.
+    /// At most eight rays, and the interval of them all; lanes without a ray meet nothing. `None` where the
+    /// directions do not share an octant or a ray may start before its origin.
     #[inline(always)]
-    pub fn new<S: Lanes>(simd: S, rays: &[Ray]) -> Self {
-        let mut lanes = Self {
-            origin: [[0.0; WIDTH]; 3],
-            direction: [[1.0; WIDTH]; 3],
-            inverse: [[1.0; WIDTH]; 3],
-            t_min: [f32::INFINITY; WIDTH],
-            t_max: [f32::NEG_INFINITY; WIDTH],
-            signs: 0,
-        };
-        for (lane, ray) in rays.iter().take(WIDTH).enumerate() {
-            for axis in 0..3 {
-                lanes.origin[axis][lane] = ray.origin[axis];
-                lanes.direction[axis][lane] = ray.direction[axis];
-            }
-            lanes.t_min[lane] = ray.t_min;
-            lanes.t_max[lane] = cull_distance(ray.t_max);
+    pub fn of_rays<S: Lanes>(simd: S, rays: &[Ray]) -> Option<(Self, Bundle)> {
+        let first = row(simd, rays.first()?);
+        let mut rows = [first; WIDTH];
+        for (row, ray) in rows.iter_mut().zip(rays) {
+            *row = self::row(simd, ray);
         }
+        let (mut low, mut high) = (first, first);
+        for row in rows {
+            low = simd.least(row, low);
+            high = simd.most(row, high);
+        }
+        let (low, high): ([f32; WIDTH], [f32; WIDTH]) = (low.into(), high.into());
+        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = transposed(rows);
+        let mut inverse = [[0.0; WIDTH]; 3];
+        let mut signs = 0;
         for axis in 0..3 {
-            let direction = simd.load(&lanes.direction[axis]);
-            let inverse = simd.splat(1.0) / direction;
-            let overflows = inverse.abs().simd_gt(f32::MAX) & !direction.simd_eq(0.0);
-            lanes.inverse[axis] = overflows.select(simd.splat(f32::NAN), inverse).into();
-            lanes.signs |= u32::from(lanes.direction[axis][0].is_sign_negative()) << axis;
+            let direction = [dx, dy, dz][axis];
+            let exact = simd.splat(1.0) / direction;
+            let overflows = exact.abs().simd_gt(f32::MAX) & !direction.simd_eq(0.0);
+            inverse[axis] = overflows.select(simd.splat(f32::NAN), exact).into();
+            match bits(exact.simd_lt(0.0)) {
+                0 => {}
+                0xff => signs |= 1 << axis,
+                _ => return None,
+            }
         }
-        lanes
+        if low[6] < 0.0 {
+            return None;
+        }
+        let mut lanes = Self {
+            origin: [ox.into(), oy.into(), oz.into()],
+            direction: [dx.into(), dy.into(), dz.into()],
+            inverse,
+            t_min: t_min.into(),
+            t_max: simd.least(t_max * SLACK, simd.splat(f32::MAX)).into(),
+            signs,
+        };
+        for lane in rays.len()..WIDTH {
+            (lanes.t_min[lane], lanes.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
+        }
+        Some((lanes, Bundle::between(&low, &high, signs)))
     }
 
     /// Tells how far the ray of a lane still goes.
@@ -78,4 +96,29 @@ impl RayLanes {
         }
         bits(enter.simd_le(simd.least(leave * WIDEN, simd.load(&self.t_max))))
     }
+}
+
+#[inline(always)]
+fn row<S: Lanes>(simd: S, ray: &Ray) -> f32x8<S> {
+    let (o, d) = (ray.origin, ray.direction);
+    [o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max].simd_into(simd)
+}
+
+/// Rows become columns: three perfect shuffles.
+#[inline(always)]
+fn transposed<S: Simd>(mut rows: [f32x8<S>; WIDTH]) -> [f32x8<S>; WIDTH] {
+    for _ in 0..3 {
+        let [a, b, c, d, e, f, g, h] = rows;
+        rows = [
+            a.zip_low(e),
+            a.zip_high(e),
+            b.zip_low(f),
+            b.zip_high(f),
+            c.zip_low(g),
+            c.zip_high(g),
+            d.zip_low(h),
+            d.zip_high(h),
+        ];
+    }
+    rows
 }

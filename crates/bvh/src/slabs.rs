@@ -16,14 +16,14 @@
 //! (interval arithmetic: Boulos, Wald, Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray
 //! Packets", 2006). Rounding is monotonic, so the interval's result bounds that of each ray exactly.
 
-use crate::lanes::{Lanes, max, min};
+use crate::lanes::Lanes;
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use crate::node::WIDTH;
 use juggler_math::{Ray, Vec3};
 
 pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
-const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
+pub(crate) const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
 
 /// How much of its offset a plane may be off by: rounding of the inverse and of the offset, 2 ulp with room.
 const OFFSET: f32 = 4.0 * f32::EPSILON;
@@ -148,73 +148,24 @@ impl Slabs {
 }
 
 impl Bundle {
-    /// The interval of several rays; `None` where their directions do not share an octant or a ray may
-    /// start before its origin. What it misses, every one of the rays misses.
-    #[inline(always)]
-    pub fn of_rays(rays: &[Ray]) -> Option<Self> {
-        let first = rays.first()?;
-        let mut interval = Interval::of(first);
-        for ray in rays {
-            interval.add(ray);
-        }
-        interval.bundle()
-    }
-}
-
-/// Extremes of several rays: origin, direction, `t_min`, `t_max`, side by side in eight lanes, and which of them
-/// have the sign bit.
-struct Interval {
-    low: [f32; WIDTH],
-    high: [f32; WIDTH],
-    any_negative: [u32; WIDTH],
-    all_negative: [u32; WIDTH],
-}
-
-impl Interval {
-    #[inline(always)]
-    fn of(ray: &Ray) -> Self {
-        let numbers = Self::numbers(ray);
-        let bits = numbers.map(f32::to_bits);
-        Self { low: numbers, high: numbers, any_negative: bits, all_negative: bits }
-    }
-
-    #[inline(always)]
-    fn numbers(ray: &Ray) -> [f32; WIDTH] {
-        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.direction.to_array());
-        [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max]
-    }
-
-    #[inline(always)]
-    fn add(&mut self, ray: &Ray) {
-        let numbers = Self::numbers(ray);
-        for (i, number) in numbers.into_iter().enumerate() {
-            self.low[i] = min(number, self.low[i]);
-            self.high[i] = max(number, self.high[i]);
-            self.any_negative[i] |= number.to_bits();
-            self.all_negative[i] &= number.to_bits();
-        }
-    }
-
+    /// The interval of rays whose origins, directions, `t_min` and `t_max` lie between `low` and `high`, with the
+    /// signs given for all directions. What it misses, every one of the rays misses.
+    ///
     /// Distances below `t_min >= 0` are cut off anyway, so the near planes only need their smallest positive
     /// distance (smallest inverse) and the far planes their largest.
     #[inline(always)]
-    fn bundle(&self) -> Option<Bundle> {
-        let mixed = (3..6).any(|lane| (self.any_negative[lane] ^ self.all_negative[lane]) >> 31 != 0);
-        if mixed || self.low[6] < 0.0 {
-            return None;
-        }
-        let side: [usize; 3] = std::array::from_fn(|axis| (self.any_negative[axis + 3] >> 31) as usize);
-        let pick = |near: [&[f32; WIDTH]; 2], first: usize| std::array::from_fn(|axis| near[side[axis]][first + axis]);
-        let direction: [[f32; 3]; 2] = [pick([&self.high, &self.low], 3), pick([&self.low, &self.high], 3)];
-        Some(Bundle {
+    pub fn between(low: &[f32; WIDTH], high: &[f32; WIDTH], signs: u32) -> Self {
+        let side = [signs as usize & 1, (signs >> 1) as usize & 1, (signs >> 2) as usize & 1];
+        let near = [[high, low][side[0]], [high, low][side[1]], [high, low][side[2]]];
+        let far = [[low, high][side[0]], [low, high][side[1]], [low, high][side[2]]];
+        Self {
             side,
-            near_origin: pick([&self.high, &self.low], 0),
-            far_origin: pick([&self.low, &self.high], 0),
-            near_inverse: inverses(Vec3::from(direction[0])).to_array(),
-            far_inverse: (inverses(Vec3::from(direction[1])) * WIDEN).to_array(),
-            t_min: self.low[6],
-            t_max: cull_distance(self.high[7]),
-        })
+            near_origin: [near[0][0], near[1][1], near[2][2]],
+            far_origin: [far[0][0], far[1][1], far[2][2]],
+            near_inverse: inverses(Vec3::new(near[0][3], near[1][4], near[2][5])).to_array(),
+            far_inverse: (inverses(Vec3::new(far[0][3], far[1][4], far[2][5])) * WIDEN).to_array(),
+            t_min: low[6],
+            t_max: cull_distance(high[7]),
+        }
     }
 }
-

@@ -5,6 +5,7 @@ use super::{Block, LANES, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes, bits};
 use crate::ray_lanes::RayLanes;
+use crate::slabs::Bundle;
 use crate::triangle::Shear;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
@@ -21,6 +22,7 @@ pub(super) struct Many<'a, S: Simd> {
     inverse: [[f32; LANES]; 3],
     t_min: [f32; LANES],
     t_max: [f32; LANES],
+    bundle: Bundle,
     hits: &'a mut [Option<TriangleHit>],
 }
 
@@ -32,6 +34,7 @@ impl<'a, S: Lanes> Many<'a, S> {
         blocks: &'a [Block],
         rays: &[Ray],
         lanes: &RayLanes,
+        bundle: &Bundle,
         hits: &'a mut [Option<TriangleHit>],
     ) -> Option<Self> {
         let size = |axis: usize| simd.load(&lanes.direction[axis]).abs();
@@ -66,6 +69,7 @@ impl<'a, S: Lanes> Many<'a, S> {
             inverse: [lanes.inverse[x], lanes.inverse[y], lanes.inverse[z]],
             t_min: lanes.t_min,
             t_max,
+            bundle: *bundle,
             hits,
         })
     }
@@ -129,52 +133,102 @@ impl<'a, S: Lanes> Many<'a, S> {
     }
 }
 
-impl<S: Lanes> Leaf for Many<'_, S> {
+impl<S: Lanes> Many<'_, S> {
+    /// Where one of the rays meets the triangles in `among`.
     #[inline(always)]
-    fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
-        let block = &self.blocks[items.start as usize];
+    fn alone(&self, lane: usize, ray: &Ray, block: &Block, among: u32, mut hit: impl FnMut(TriangleHit)) {
         let shear = self.shear(lane);
         let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let Some(meeting) =
-            lines.meet(self.simd, block.corners(self.simd, self.axes), (1 << items.len()) - 1)
-        else {
-            return;
-        };
+        let corners = block.corners(self.simd, self.axes);
+        let Some(meeting) = lines.meet(self.simd, corners, among) else { return };
         for number in Bits(meeting.mask) {
             let t = shear.clamp(meeting.t[number], block.permuted(number, self.axes));
             if ray.t_min <= t && t <= ray.t_max {
-                let hit =
-                    TriangleHit { t, u: meeting.u[number], v: meeting.v[number], index: block.index[number] };
-                self.keep(lane, hit, ray);
+                hit(TriangleHit { t, u: meeting.u[number], v: meeting.v[number], index: block.index[number] });
             }
         }
     }
 
+    #[inline(never)]
+    fn closest_alone(&mut self, lane: usize, ray: &mut Ray, block: &Block, among: u32) {
+        let mut best = self.hits[lane];
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                self.alone(
+                    lane,
+                    ray,
+                    block,
+                    among,
+                    #[inline(always)]
+                    |hit| {
+                        if best.is_none_or(|best| hit.t < best.t || hit.t == best.t && hit.index < best.index) {
+                            best = Some(hit);
+                        }
+                    },
+                );
+            },
+        );
+        if let Some(hit) = best {
+            self.hits[lane] = best;
+            ray.t_max = hit.t;
+            self.t_max[lane & (LANES - 1)] = hit.t;
+        }
+    }
+
+    #[inline(never)]
+    fn any_alone(&self, lane: usize, ray: &Ray, block: &Block, among: u32) -> bool {
+        let mut found = false;
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                self.alone(
+                    lane,
+                    ray,
+                    block,
+                    among,
+                    #[inline(always)]
+                    |_| found = true,
+                );
+            },
+        );
+        found
+    }
+
+    /// Triangles of a block that the packet may meet.
     #[inline(always)]
-    fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
-        let block = &self.blocks[items.start as usize];
-        let shear = self.shear(lane);
-        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let Some(meeting) =
-            lines.meet(self.simd, block.corners(self.simd, self.axes), (1 << items.len()) - 1)
-        else {
-            return false;
-        };
-        Bits(meeting.mask).any(|number| {
-            let t = shear.clamp(meeting.t[number], block.permuted(number, self.axes));
-            ray.t_min <= t && t <= ray.t_max
-        })
+    fn candidates(&self, block: &Block, count: usize) -> u32 {
+        block.test_bundle(self.simd, &self.bundle) & ((1 << count) - 1)
+    }
+}
+
+impl<S: Lanes> Leaf for Many<'_, S> {
+    #[inline(always)]
+    fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
+        let blocks = self.blocks;
+        self.closest_alone(lane, ray, &blocks[items.start as usize], (1 << items.len()) - 1);
     }
 
     #[inline(always)]
-    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
-        let _ = first;
+    fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
+        self.any_alone(lane, ray, &self.blocks[items.start as usize], (1 << items.len()) - 1)
+    }
+
+    #[inline(always)]
+    fn closest_many(&mut self, _first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        for number in 0..items.len() {
+        let among = self.candidates(block, items.len());
+        if active.count_ones() * 2 <= among.count_ones() {
+            for lane in Bits(active) {
+                self.closest_alone(lane, &mut rays[lane], block, among);
+            }
+            return;
+        }
+        for number in Bits(among) {
             let (mask, t, u, v) = self.triangle(block, number, active);
             for lane in Bits(mask) {
-                let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number & 7] };
+                let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number] };
                 self.keep(lane, hit, &mut rays[lane]);
             }
         }
@@ -182,9 +236,16 @@ impl<S: Lanes> Leaf for Many<'_, S> {
 
     #[inline(always)]
     fn any_many(&mut self, _first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {
-        let mut found = 0;
         let block = &self.blocks[items.start as usize];
-        for number in 0..items.len() {
+        let among = self.candidates(block, items.len());
+        let mut found = 0;
+        if active.count_ones() * 2 <= among.count_ones() {
+            for lane in Bits(active) {
+                found |= u32::from(self.any_alone(lane, &rays[lane], block, among)) << lane;
+            }
+            return found;
+        }
+        for number in Bits(among) {
             found |= self.triangle(block, number, active & !found).0;
         }
         found

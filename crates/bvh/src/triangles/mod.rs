@@ -5,7 +5,7 @@ mod many;
 mod meet;
 mod one;
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, bits};
 use crate::node::Child;
 use crate::pages::Pages;
 use crate::packet::PACKET;
@@ -15,6 +15,7 @@ use crate::stack::Stack;
 use crate::{BuildStats, Bvh};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
+use fearless_simd::prelude::*;
 use juggler_math::{Aabb, Ray, Vec3};
 use many::Many;
 use meet::Corner;
@@ -23,6 +24,7 @@ use std::fmt;
 use std::ops::Range;
 
 const LANES: usize = 8;
+const GROWTH: f32 = 8.0 * f32::EPSILON;
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,9 +125,8 @@ impl TriangleBvh {
         let stack = &mut Stack::new();
         hits.fill(None);
         for (rays, hits) in rays.chunks_mut(PACKET).zip(hits.chunks_mut(PACKET)) {
-            if let Some(bundle) = Bundle::of_rays(rays) {
-                let mut lanes = RayLanes::new(simd, rays);
-                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, hits) {
+            if let Some((mut lanes, bundle)) = RayLanes::of_rays(simd, rays) {
+                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &bundle, hits) {
                     self.bvh.closest_group(simd, stack, 0, rays, bundle, &mut lanes, &mut many);
                     continue;
                 }
@@ -141,9 +142,8 @@ impl TriangleBvh {
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
         let stack = &mut Stack::new();
         for (rays, occluded) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)) {
-            if let Some(bundle) = Bundle::of_rays(rays) {
-                let lanes = RayLanes::new(simd, rays);
-                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &mut []) {
+            if let Some((lanes, bundle)) = RayLanes::of_rays(simd, rays) {
+                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &bundle, &mut []) {
                     let found = self.bvh.any_group(simd, stack, 0, rays, &bundle, &lanes, &mut many);
                     for (lane, occluded) in occluded.iter_mut().enumerate() {
                         *occluded = found >> lane & 1 != 0;
@@ -223,6 +223,25 @@ impl Block {
     fn corner<S: Lanes>(&self, simd: S, corner: usize, [x, y, z]: [usize; 3]) -> Corner<S> {
         let axes = &self.vertices[corner];
         [simd.load(&axes[x]), simd.load(&axes[y]), simd.load(&axes[z])]
+    }
+
+    /// Triangles (bit per lane) whose boxes any ray of the bundle may meet.
+    #[inline(always)]
+    fn test_bundle<S: Lanes>(&self, simd: S, bundle: &Bundle) -> u32 {
+        let [a, b, c] = &self.vertices;
+        let mut enter = simd.splat(bundle.t_min);
+        let mut leave = simd.splat(bundle.t_max);
+        for axis in 0..3 {
+            let (a, b, c) = (simd.load(&a[axis]), simd.load(&b[axis]), simd.load(&c[axis]));
+            let (low, high) = (simd.least(a, simd.least(b, c)), simd.most(a, simd.most(b, c)));
+            // As much as the boxes of single triangles are grown, and more.
+            let room = (high - low) * GROWTH + (low.abs() + high.abs()) * GROWTH;
+            let (low, high) = (low - room, high + room);
+            let (near, far) = if bundle.side[axis] == 0 { (low, high) } else { (high, low) };
+            enter = simd.most((near - bundle.near_origin[axis]) * bundle.near_inverse[axis], enter);
+            leave = simd.least((far - bundle.far_origin[axis]) * bundle.far_inverse[axis], leave);
+        }
+        bits(enter.simd_le(leave))
     }
 
     /// The corners of one lane, axes in the order of the shear.
