@@ -5,17 +5,13 @@
 //! the origin of the plane lies. Two triangles that share an edge compute the same number for it with
 //! opposite sign, so no ray can pass between them. Both faces are hit.
 //!
-//! Deviations from the paper: the winding is not kept, for nothing is culled by it; a sign is taken from
-//! double precision only where the single one is zero (a product difference rounds to zero or keeps its
-//! sign); the weights are normalised before the distance is summed, which avoids overflow; and the distance
-//! is never before the entry of the triangle's own box, so that which hit is closest cannot depend on the
-//! order in which boxes are visited.
+//! Deviations from the paper: the winding is not kept, for nothing is culled by it; single precision only tells
+//! misses (a product difference rounds to zero or keeps its sign), weights and distance of hits are always summed
+//! in double precision; and the distance is never before the entry of the triangle's own box, so that which hit is
+//! closest cannot depend on the order in which boxes are visited.
 
 use crate::slabs::entry;
 use juggler_math::{Aabb, Ray, Vec3};
-
-/// Determinants outside this range have lost too much to underflow or overflow in single precision.
-const SAFE: std::ops::Range<f32> = 1e-24..1e30;
 
 /// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
 /// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
@@ -79,42 +75,37 @@ impl Shear {
 }
 
 /// Distance and weights of the second and third corner; `None` where the axis passes outside.
+///
+/// In double precision products are exact. So what is found lies on the triangle of the given points, and is off by
+/// no more than their own rounding, however slender the triangle is.
 #[inline(always)]
 fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
-    let edges = edges(points.map(|[x, y, _]| [x, y]));
-    if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
+    if outside(edges(points.map(|[x, y, _]| [x, y]))) {
         return None;
     }
+    // Zeros of single precision have a sign here.
+    let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
     let determinant = edges[0] + edges[1] + edges[2];
-    if edges.contains(&0.0) || !SAFE.contains(&determinant.abs()) {
-        return weigh_exactly(points);
+    if outside(edges) || determinant == 0.0 || !determinant.is_finite() {
+        return None;
     }
     let inverse = 1.0 / determinant;
     let [u, v, w] = edges.map(|e| e * inverse);
-    Some((u * points[0][2] + v * points[1][2] + w * points[2][2], v, w))
+    let [a, b, c] = points.map(|p| f64::from(p[2]));
+    Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
+}
+
+/// Whether the axis passes edges on different sides.
+#[inline(always)]
+fn outside<T: Copy + Default + PartialOrd>(edges: [T; 3]) -> bool {
+    let zero = T::default();
+    edges.iter().any(|&e| e < zero) && edges.iter().any(|&e| e > zero)
 }
 
 /// Twice the signed areas between the axis and each edge, in the order of the opposite corners.
 #[inline(always)]
 fn edges<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>([a, b, c]: [[T; 2]; 3]) -> [T; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
-}
-
-/// [`weigh`] in double precision, where the signs are exact: for axes through an edge or a corner, and
-/// for very large or small triangles.
-#[cold]
-fn weigh_exactly(points: [Point; 3]) -> Option<(f32, f32, f32)> {
-    let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
-    if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
-        return None;
-    }
-    let determinant = edges[0] + edges[1] + edges[2];
-    if determinant == 0.0 || !determinant.is_finite() {
-        return None;
-    }
-    let [u, v, w] = edges.map(|e| e / determinant);
-    let [a, b, c] = points.map(|p| f64::from(p[2]));
-    Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
 }
 
 #[cfg(test)]
