@@ -61,7 +61,7 @@ impl Surface {
     }
 
     /// A ray from here to a place `distance` away (or infinitely far) that ends just before it: what the place lies on is not met. That
-    /// holds for rays that come down on it by more than some 6 degrees; flatter ones may meet it, for what a rounded
+    /// holds for rays that come down on it by more than some 12 degrees; flatter ones may meet it, for what a rounded
     /// direction misses of the place grows along such a ray without bound.
     pub fn spawn_to(&self, direction: Vec3, distance: f32, time: f32) -> Ray {
         // Off at the end are: the direction by a few half ulps of the distance, start and place by the error.

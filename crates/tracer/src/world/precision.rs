@@ -291,3 +291,27 @@ fn closed_boxes_are_closed_along_their_edges() {
         }
     }
 }
+
+/// A wall as thin as a few dozen units in the last place of its coordinates still has two sides.
+#[test]
+fn thin_walls_are_not_jumped_over() {
+    let mut random = Random::new(35);
+    for (far, map) in [0.0f32, 1.0, 100.0, 1e4].into_iter().flat_map(|far| [0, 1].map(|map| (far, map))) {
+        for size in SIZES {
+            let thin = 48.0 * f32::EPSILON * (1.0 + far);
+            let wall = Cuboid { min: Vec3::new(-0.5, -0.5, 0.0), max: Vec3::new(0.5, 0.5, thin) };
+            let subject = Subject::new(&wall.into(), map, size, far, &mut random);
+            for _ in 0..300 {
+                let target = Vec3::new(random.range(-0.4, 0.4), random.range(-0.4, 0.4), 0.0);
+                let from =
+                    target + Vec3::new(random.f32(), random.f32(), if random.below(2) == 0 { 1.0 } else { -1.0 });
+                let ray = towards(subject.transform.point(from), subject.transform.point(target));
+                let surface = subject.meet(&ray).unwrap_or_else(|| panic!("{map} {size} {far}: {ray:?}"));
+                let (inwards, _) = leave(&mut random, surface.normal, -1.0, 0.1);
+                let next = subject.meet(&surface.spawn(inwards, 0.0));
+                let fine = next.is_some_and(|next| next.normal.dot(inwards) > 0.0);
+                assert!(fine, "{map} {size} {far}: {surface:?} {inwards} {next:?}");
+            }
+        }
+    }
+}
