@@ -4,6 +4,7 @@
 //! With `JUGGLER_PICTURES=folder` the pictures are also written there, to be looked at.
 
 #![expect(clippy::unwrap_used, reason = "a test")]
+#![expect(clippy::print_stderr, reason = "skipped tests are for the reader")]
 
 use juggler::math::{Image, Ray, Vec3};
 use juggler::scene::Scene;
@@ -42,7 +43,30 @@ fn differing(a: &Image, b: &Image) -> f64 {
 /// Every kind of solid on a checkered ground, with a mirror, glass, soft and hard shadows, occlusion and a wall that
 /// a light sits on. `unit`: its length; `scaled`: shapes of unit size under a scale, instead of large shapes.
 fn still_life(unit: f64, scaled: bool) -> Value {
-    let l = |value: f64| value * unit;
+    json!({
+        "version": 1,
+        "render": {"size": SIZE, "samples": 4, "integrator": {"classic": {"occlusion_distance": unit}}},
+        "camera": {"perspective": {"eye": lengths(unit, [1.0, 2.5, 7.0]), "look_at": lengths(unit, [0.0, 0.9, 0.0]),
+            "vertical_fov_degrees": 40}},
+        "background": {"solid": {"color": [0.2, 0.3, 0.5]}},
+        "materials": {
+            "ground": {"checkerboard": {"size": 0.7 * unit}},
+            "ball": {"checkerboard": {"size": if scaled { 0.3 } else { 0.3 * unit }}},
+            "plain": {"phong": {"diffuse": [0.7, 0.4, 0.2], "ambient": 0.5, "occlusion": 1}},
+            "mirror": {"phong": {"diffuse": 0.05, "reflection": 0.9}},
+            "glass": {"phong": {"diffuse": 0, "reflection": 1, "transparency": 0.95, "ior": 1.5, "fresnel": true}},
+        },
+        "lights": [
+            {"ambient": {"color": 0.3}},
+            {"point": {"position": lengths(unit, [3.0, 6.0, 4.0]), "intensity": 0.7, "attenuation": {"constant": 1},
+                "extent": {"sphere": {"radius": 0.5 * unit}}}},
+            {"point": {"position": lengths(unit, [-2.0, 3.0, -2.5]), "intensity": 0.4, "attenuation": {"constant": 1}}},
+        ],
+        "objects": objects(unit, scaled),
+    })
+}
+
+fn objects(unit: f64, scaled: bool) -> Vec<Value> {
     let object = |kind: &str, mut shape: Value, material: &str, turn: f64, place: [f64; 3]| {
         let mut steps = vec![json!({"rotate": {"axis": [1, 2, 0.5], "degrees": turn}})];
         if scaled {
@@ -53,41 +77,21 @@ fn still_life(unit: f64, scaled: bool) -> Value {
         steps.push(json!({"translate": lengths(unit, place)}));
         json!({"shape": {kind: shape}, "material": material, "transform": steps})
     };
+    let cube = json!({"min": [-0.5, -0.5, -0.5], "max": [0.5, 0.5, 0.5]});
     let tetrahedron = json!({"positions": [[0, 0, 0], [1, 0, 0], [0, 0, -1], [0.3, 1, -0.3]],
         "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]});
-    json!({
-        "version": 1,
-        "render": {"size": SIZE, "samples": 4, "integrator": {"classic": {"occlusion_distance": l(1.0)}}},
-        "camera": {"perspective": {"eye": lengths(unit, [1.0, 2.5, 7.0]), "look_at": lengths(unit, [0.0, 0.9, 0.0]),
-            "vertical_fov_degrees": 40}},
-        "background": {"solid": {"color": [0.2, 0.3, 0.5]}},
-        "materials": {
-            "ground": {"checkerboard": {"size": l(0.7)}},
-            "ball": {"checkerboard": {"size": if scaled { 0.3 } else { l(0.3) }}},
-            "plain": {"phong": {"diffuse": [0.7, 0.4, 0.2], "ambient": 0.5, "occlusion": 1}},
-            "mirror": {"phong": {"diffuse": 0.05, "reflection": 0.9}},
-            "glass": {"phong": {"diffuse": 0, "reflection": 1, "transparency": 0.95, "ior": 1.5, "fresnel": true}},
-        },
-        "lights": [
-            {"ambient": {"color": 0.3}},
-            {"point": {"position": lengths(unit, [3.0, 6.0, 4.0]), "intensity": 0.7, "attenuation": {"constant": 1},
-                "extent": {"sphere": {"radius": l(0.5)}}}},
-            {"point": {"position": lengths(unit, [-2.0, 3.0, -2.5]), "intensity": 0.4, "attenuation": {"constant": 1}}},
-        ],
-        "objects": [
-            {"shape": "plane", "material": "ground"},
-            {"shape": {"rectangle": {"size": lengths(unit, [20.0, 20.0])}}, "material": "plain",
-                "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}},
-                    {"translate": lengths(unit, [0.0, 0.0, -2.5])}]},
-            object("sphere", json!({"radius": 0.8}), "mirror", 0.0, [-1.6, 0.8, -0.5]),
-            object("sphere", json!({"radius": 0.6}), "glass", 0.0, [0.9, 0.6, 2.0]),
-            object("sphere", json!({"radius": 0.5}), "ball", 50.0, [-0.8, 0.5, 1.8]),
-            object("cuboid", json!({"min": [-0.5, -0.5, -0.5], "max": [0.5, 0.5, 0.5]}), "plain", 30.0, [0.2, 0.8, -0.4]),
-            object("cylinder", json!({"radius": 0.3, "y_min": 0.0, "y_max": 1.4}), "plain", 0.0, [1.9, 0.0, -0.8]),
-            object("disk", json!({"radius": 0.6, "inner_radius": 0.2}), "plain", 70.0, [2.4, 0.7, 0.6]),
-            object("mesh", tetrahedron, "plain", 20.0, [-2.8, 0.3, 1.2]),
-        ],
-    })
+    vec![
+        json!({"shape": "plane", "material": "ground"}),
+        json!({"shape": {"rectangle": {"size": lengths(unit, [20.0, 20.0])}}, "material": "plain", "transform": [
+            {"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": lengths(unit, [0.0, 0.0, -2.5])}]}),
+        object("sphere", json!({"radius": 0.8}), "mirror", 0.0, [-1.6, 0.8, -0.5]),
+        object("sphere", json!({"radius": 0.6}), "glass", 0.0, [0.9, 0.6, 2.0]),
+        object("sphere", json!({"radius": 0.5}), "ball", 50.0, [-0.8, 0.5, 1.8]),
+        object("cuboid", cube, "plain", 30.0, [0.2, 0.8, -0.4]),
+        object("cylinder", json!({"radius": 0.3, "y_min": 0.0, "y_max": 1.4}), "plain", 0.0, [1.9, 0.0, -0.8]),
+        object("disk", json!({"radius": 0.6, "inner_radius": 0.2}), "plain", 70.0, [2.4, 0.7, 0.6]),
+        object("mesh", tetrahedron, "plain", 20.0, [-2.8, 0.3, 1.2]),
+    ]
 }
 
 /// Multiplies all lengths of a shape; numbers of corners are whole.
@@ -123,7 +127,9 @@ fn portrait(model: &Model) -> Value {
     json!({
         "version": 1,
         "render": {"size": SIZE, "samples": 1},
-        "camera": {"perspective": {"eye": beside(1.0, 0.7, 1.6), "look_at": center.to_array(), "vertical_fov_degrees": 38}},
+        "camera": {"perspective": {
+            "eye": beside(1.0, 0.7, 1.6), "look_at": center.to_array(), "vertical_fov_degrees": 38
+        }},
         "background": {"solid": {"color": [0.3, 0.4, 0.6]}},
         "materials": {"clay": {"phong": {"diffuse": 0.8, "ambient": 0.2}}},
         "lights": [{"ambient": {"color": 0.3}},
