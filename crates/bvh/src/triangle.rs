@@ -5,18 +5,14 @@
 //! the origin of the plane lies. Two triangles that share an edge compute the same number for it with
 //! opposite sign, so no ray can pass between them. Both faces are hit.
 //!
-//! Deviations from the paper: the winding is not kept, for nothing is culled by it; a sign is taken from
-//! double precision only where the single one is zero (a product difference rounds to zero or keeps its
-//! sign); the weights are normalised before the distance is summed, which avoids overflow; and the distance
-//! is never before the entry of the triangle's own box, so that which hit is closest cannot depend on the
-//! order in which boxes are visited.
+//! Deviations from the paper: the winding is not kept, for nothing is culled by it; single precision only tells
+//! misses (a product difference rounds to zero or keeps its sign), weights and distance of hits are always summed
+//! in double precision; and the distance is never before the entry of the triangle's own box, so that which hit is
+//! closest cannot depend on the order in which boxes are visited.
 
 use crate::lanes::{max, min};
 use crate::slabs::inverses;
 use juggler_math::{Ray, Vec3};
-
-/// Determinants outside this range have lost too much to underflow or overflow in single precision.
-pub(crate) const SAFE: std::ops::Range<f32> = 1e-24..1e30;
 
 /// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
 /// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
@@ -25,7 +21,9 @@ pub(crate) const SAFE: std::ops::Range<f32> = 1e-24..1e30;
 pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, f32, f32)> {
     let [x, y, z] = inverses(ray.direction).to_array();
     let signs = (0..3).fold(0, |signs, axis| signs | u32::from(ray.direction[axis].is_sign_negative()) << axis);
-    let hit = Shear::of(ray, [x, y, z, 0.0], signs).intersect(ray, [a, b, c])?;
+    let shear = Shear::of(ray, [x, y, z, 0.0], signs);
+    let corners = [a, b, c].map(|corner| shear.axes.map(|axis| corner[axis]));
+    let hit = shear.intersect(ray.t_min, ray.t_max, corners)?;
     has_area([a, b, c]).then_some(hit)
 }
 
@@ -50,7 +48,7 @@ pub(crate) struct Shear {
 }
 
 /// A vertex in the ray's frame.
-type Point = [f32; 3];
+pub(crate) type Point = [f32; 3];
 
 impl Shear {
     /// `inverse` of the direction as [`inverses`] gives it, `signs` of the direction, a bit per axis.
@@ -75,23 +73,20 @@ impl Shear {
     }
 
     #[inline(always)]
-    fn project(&self, vertex: [f32; 3]) -> Point {
+    pub fn project(&self, vertex: [f32; 3]) -> Point {
         let [x, y, z]: [f32; 3] = std::array::from_fn(|k| vertex[k] - self.origin[k]);
         [x - self.factors[0] * z, y - self.factors[1] * z, self.factors[2] * z]
     }
 
-    /// [`intersect_triangle`] for the ray that the shear was made of, and a triangle that
-    /// [has an area](has_area).
-    fn intersect(&self, ray: &Ray, vertices: [Vec3; 3]) -> Option<(f32, f32, f32)> {
-        let vertices = vertices.map(|vertex| self.axes.map(|axis| vertex[axis]));
-        let points = vertices.map(|vertex| self.project(vertex));
-        let (t, u, v) = weigh(points)?;
+    /// [`intersect_triangle`] for the ray that the shear was made of and a triangle that [has an area](has_area), its
+    /// coordinates in the order of [`Shear::axes`].
+    #[inline(always)]
+    pub fn intersect(&self, t_min: f32, t_max: f32, corners: [Point; 3]) -> Option<(f32, f32, f32)> {
+        let points = [self.project(corners[0]), self.project(corners[1]), self.project(corners[2])];
         let end = max(points[0][2], max(points[1][2], points[2][2]));
-        if !(t <= ray.t_max && end >= ray.t_min) {
-            return None;
-        }
-        let t = self.clamp(t, vertices);
-        (ray.t_min <= t && t <= ray.t_max).then_some((t, u, v))
+        let (t, u, v) = weigh(points)?;
+        let t_clamped = self.clamp(t, corners);
+        (t <= t_max && end >= t_min && t_min <= t_clamped && t_clamped <= t_max).then_some((t_clamped, u, v))
     }
 
     /// The distance, but not before the ray's line enters the box of the triangle as the traversal computes it.
@@ -114,42 +109,37 @@ impl Shear {
 }
 
 /// Distance and weights of the second and third corner; `None` where the axis passes outside.
+///
+/// In double precision products are exact. So what is found lies on the triangle of the given points, and is off by
+/// no more than their own rounding, however slender the triangle is.
 #[inline(always)]
-fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
-    let edges = edges(points.map(|[x, y, _]| [x, y]));
-    if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
+pub(crate) fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+    if outside(edges(points.map(|[x, y, _]| [x, y]))) {
         return None;
     }
+    // Zeros of single precision have a sign here.
+    let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
     let determinant = edges[0] + edges[1] + edges[2];
-    if edges.contains(&0.0) || !SAFE.contains(&determinant.abs()) {
-        return weigh_exactly(points);
+    if outside(edges) || determinant == 0.0 || !determinant.is_finite() {
+        return None;
     }
     let inverse = 1.0 / determinant;
-    let [u, v, w] = edges.map(|e| e * inverse);
-    Some((u * points[0][2] + v * points[1][2] + w * points[2][2], v, w))
+    let [u, v, w] = [edges[0] * inverse, edges[1] * inverse, edges[2] * inverse];
+    let [a, b, c] = points.map(|p| f64::from(p[2]));
+    Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
+}
+
+/// Whether the axis passes edges on different sides.
+#[inline(always)]
+fn outside<T: Copy + Default + PartialOrd>(edges: [T; 3]) -> bool {
+    let zero = T::default();
+    edges.iter().any(|&e| e < zero) && edges.iter().any(|&e| e > zero)
 }
 
 /// Twice the signed areas between the axis and each edge, in the order of the opposite corners.
 #[inline(always)]
 pub(crate) fn edges<T: Copy + std::ops::Mul<Output = T> + std::ops::Sub<Output = T>>([a, b, c]: [[T; 2]; 3]) -> [T; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
-}
-
-/// [`weigh`] in double precision, where the signs are exact: for axes through an edge or a corner, and
-/// for very large or small triangles.
-#[cold]
-pub(crate) fn weigh_exactly(points: [Point; 3]) -> Option<(f32, f32, f32)> {
-    let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
-    if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
-        return None;
-    }
-    let determinant = edges[0] + edges[1] + edges[2];
-    if determinant == 0.0 || !determinant.is_finite() {
-        return None;
-    }
-    let [u, v, w] = edges.map(|e| e / determinant);
-    let [a, b, c] = points.map(|p| f64::from(p[2]));
-    Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ impl Surface {
         let stretch = transform.vector(self.normal).dot(normal).abs();
         Self {
             point,
-            error: self.error * stretch + self.rounding(transform, point, normal, stretch),
+            error: (self.error + f32::MIN_POSITIVE) * stretch + self.rounding(transform, point, normal, stretch),
             normal,
             shading_normal,
             uv: self.uv,
@@ -54,9 +54,17 @@ impl Surface {
 
     /// A ray without end from here, free of this surface.
     pub fn spawn(&self, direction: Vec3, time: f32) -> Ray {
-        // Even an exact point on an axis plane has to move off it.
+        // Even an exact point on an axis plane has to move off it, in object space too (see `to_world`).
         let error = self.error + f32::MIN_POSITIVE;
         let origin = robust::offset_origin(self.point, error, self.normal, direction);
         Ray { time, ..Ray::new(origin, direction) }
+    }
+
+    /// A ray from here to a place `distance` away (or infinitely far) that ends just before it: what the place lies on is not met. That
+    /// holds for rays that come down on it by more than some 12 degrees; flatter ones may meet it, for what a rounded
+    /// direction misses of the place grows along such a ray without bound.
+    pub fn spawn_to(&self, direction: Vec3, distance: f32, time: f32) -> Ray {
+        // Off at the end are: the direction by a few half ulps of the distance, start and place by the error.
+        self.spawn(direction, time).up_to(distance * (1.0 - robust::gamma(256)) - 16.0 * self.error)
     }
 }

@@ -1,6 +1,6 @@
 //! Eight rays at the leaves: one triangle at a time, or eight triangles for each ray when few rays are left.
 
-use super::meet::Lines;
+use super::meet::{Lines, splat};
 use super::{Block, LANES, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes, bits};
@@ -104,95 +104,18 @@ impl<'a, S: Lanes> Many<'a, S> {
 
     #[inline(always)]
     fn keep(&mut self, lane: usize, hit: TriangleHit, ray: &mut Ray) {
-        let best = &mut self.hits[lane];
-        if best.is_none_or(|best| hit.t < best.t || hit.t == best.t && hit.index < best.index) {
-            *best = Some(hit);
+        if hit.is_before(&self.hits[lane]) {
+            self.hits[lane] = Some(hit);
             ray.t_max = hit.t;
             self.t_max[lane & (LANES - 1)] = hit.t;
         }
     }
 
-    /// All active rays and one triangle.
+    /// Rays that may hit the triangle in a lane of the block.
     #[inline(always)]
-    fn triangle(&self, block: &Block, number: usize, active: u32) -> (u32, [f32; 8], [f32; 8], [f32; 8]) {
-        let corners = block.permuted(number, self.axes);
-        let lines = self.lines();
-        let splat = |corner: [f32; 3]| super::meet::splat(self.simd, corner);
-        let Some(meeting) = lines.meet(self.simd, [splat(corners[0]), splat(corners[1]), splat(corners[2])], active)
-        else {
-            return (0, [0.0; 8], [0.0; 8], [0.0; 8]);
-        };
-        let mut t = self.simd.load(&meeting.t);
-        for axis in 0..3 {
-            let near = Shear::near(&corners, axis, self.side[axis]);
-            let enter = (self.simd.splat(near) - lines.origin[axis]) * self.simd.load(&self.inverse[axis]);
-            t = self.simd.most(enter, t);
-        }
-        let mask = meeting.mask & bits(lines.t_min.simd_le(t) & t.simd_le(lines.t_max));
-        (mask, t.into(), meeting.u, meeting.v)
-    }
-}
-
-impl<S: Lanes> Many<'_, S> {
-    /// Where one of the rays meets the triangles in `among`.
-    #[inline(always)]
-    fn alone(&self, lane: usize, ray: &Ray, block: &Block, among: u32, mut hit: impl FnMut(TriangleHit)) {
-        let shear = self.shear(lane);
-        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let corners = block.corners(self.simd, self.axes);
-        let Some(meeting) = lines.meet(self.simd, corners, among) else { return };
-        for number in Bits(meeting.mask) {
-            let t = shear.clamp(meeting.t[number], block.permuted(number, self.axes));
-            if ray.t_min <= t && t <= ray.t_max {
-                hit(TriangleHit { t, u: meeting.u[number], v: meeting.v[number], index: block.index[number] });
-            }
-        }
-    }
-
-    #[inline(never)]
-    fn closest_alone(&mut self, lane: usize, ray: &mut Ray, block: &Block, among: u32) {
-        let mut best = self.hits[lane];
-        self.simd.vectorize(
-            #[inline(always)]
-            || {
-                self.alone(
-                    lane,
-                    ray,
-                    block,
-                    among,
-                    #[inline(always)]
-                    |hit| {
-                        if best.is_none_or(|best| hit.t < best.t || hit.t == best.t && hit.index < best.index) {
-                            best = Some(hit);
-                        }
-                    },
-                );
-            },
-        );
-        if let Some(hit) = best {
-            self.hits[lane] = best;
-            ray.t_max = hit.t;
-            self.t_max[lane & (LANES - 1)] = hit.t;
-        }
-    }
-
-    #[inline(never)]
-    fn any_alone(&self, lane: usize, ray: &Ray, block: &Block, among: u32) -> bool {
-        let mut found = false;
-        self.simd.vectorize(
-            #[inline(always)]
-            || {
-                self.alone(
-                    lane,
-                    ray,
-                    block,
-                    among,
-                    #[inline(always)]
-                    |_| found = true,
-                );
-            },
-        );
-        found
+    fn rays_at(&self, block: &Block, number: usize) -> u32 {
+        let [a, b, c] = block.permuted(number, self.axes);
+        self.lines().candidates(self.simd, [splat(self.simd, a), splat(self.simd, b), splat(self.simd, c)])
     }
 
     /// Triangles of a block that the packet may meet.
@@ -205,31 +128,39 @@ impl<S: Lanes> Many<'_, S> {
 impl<S: Lanes> Leaf for Many<'_, S> {
     #[inline(always)]
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
-        let blocks = self.blocks;
-        self.closest_alone(lane, ray, &blocks[items.start as usize], (1 << items.len()) - 1);
+        let (blocks, shear) = (self.blocks, self.shear(lane));
+        let block = &blocks[items.start as usize];
+        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
+        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes));
+        for number in Bits(candidates & ((1 << items.len()) - 1)) {
+            if let Some(hit) = block.hit(&shear, ray.t_min, ray.t_max, number) {
+                self.keep(lane, hit, ray);
+            }
+        }
     }
 
     #[inline(always)]
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
-        self.any_alone(lane, ray, &self.blocks[items.start as usize], (1 << items.len()) - 1)
+        let (block, shear) = (&self.blocks[items.start as usize], self.shear(lane));
+        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
+        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes));
+        for number in Bits(candidates & ((1 << items.len()) - 1)) {
+            if block.hit(&shear, ray.t_min, ray.t_max, number).is_some() {
+                return true;
+            }
+        }
+        false
     }
 
     #[inline(always)]
     fn closest_many(&mut self, _first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        let among = self.candidates(block, items.len());
-        if active.count_ones() * 2 <= among.count_ones() {
-            for lane in Bits(active) {
-                self.closest_alone(lane, &mut rays[lane], block, among);
-            }
-            return;
-        }
-        for number in Bits(among) {
-            let (mask, t, u, v) = self.triangle(block, number, active);
-            for lane in Bits(mask) {
-                let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number] };
-                self.keep(lane, hit, &mut rays[lane]);
+        for number in Bits(self.candidates(block, items.len())) {
+            for lane in Bits(self.rays_at(block, number) & active) {
+                if let Some(hit) = block.hit(&self.shear(lane), rays[lane].t_min, rays[lane].t_max, number) {
+                    self.keep(lane, hit, &mut rays[lane]);
+                }
             }
         }
     }
@@ -237,16 +168,12 @@ impl<S: Lanes> Leaf for Many<'_, S> {
     #[inline(always)]
     fn any_many(&mut self, _first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {
         let block = &self.blocks[items.start as usize];
-        let among = self.candidates(block, items.len());
         let mut found = 0;
-        if active.count_ones() * 2 <= among.count_ones() {
-            for lane in Bits(active) {
-                found |= u32::from(self.any_alone(lane, &rays[lane], block, among)) << lane;
+        for number in Bits(self.candidates(block, items.len())) {
+            for lane in Bits(self.rays_at(block, number) & active & !found) {
+                let hit = block.hit(&self.shear(lane), rays[lane].t_min, rays[lane].t_max, number);
+                found |= u32::from(hit.is_some()) << lane;
             }
-            return found;
-        }
-        for number in Bits(among) {
-            found |= self.triangle(block, number, active & !found).0;
         }
         found
     }

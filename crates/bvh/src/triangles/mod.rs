@@ -12,6 +12,7 @@ use crate::packet::PACKET;
 use crate::ray_lanes::RayLanes;
 use crate::slabs::{Bundle, Slabs};
 use crate::stack::Stack;
+use crate::triangle::Shear;
 use crate::{BuildStats, Bvh};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
@@ -37,6 +38,17 @@ pub struct TriangleHit {
     pub v: f32,
     /// Number of the triangle in the list that the tree was built from.
     pub index: u32,
+}
+
+impl TriangleHit {
+    /// Nearer, or as near and on a triangle with a smaller number.
+    #[inline(always)]
+    fn is_before(&self, other: &Option<Self>) -> bool {
+        match other {
+            Some(other) => self.t < other.t || self.t == other.t && self.index < other.index,
+            None => true,
+        }
+    }
 }
 
 /// Why triangles were refused.
@@ -216,6 +228,13 @@ impl Block {
             }
         }
         self.index[lane] = triangle;
+    }
+
+    /// Where the ray of the shear hits the triangle in a lane.
+    #[inline(always)]
+    fn hit(&self, shear: &Shear, t_min: f32, t_max: f32, lane: usize) -> Option<TriangleHit> {
+        let (t, u, v) = shear.intersect(t_min, t_max, self.permuted(lane, shear.axes))?;
+        Some(TriangleHit { t, u, v, index: self.index[lane & 7] })
     }
 
     /// A corner, axes in the order of the shear.

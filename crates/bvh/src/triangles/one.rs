@@ -25,20 +25,25 @@ impl<'a, S: Lanes> One<'a, S> {
     }
 }
 
+impl<S: Lanes> One<'_, S> {
+    /// Lanes of the block that the ray may hit.
+    #[inline(always)]
+    fn candidates(&self, ray: &Ray, block: &Block, count: usize) -> u32 {
+        let lines = Lines::of_one(self.simd, &self.shear, ray.t_min, ray.t_max);
+        lines.candidates(self.simd, block.corners(self.simd, self.shear.axes)) & ((1 << count) - 1)
+    }
+}
+
 impl<S: Lanes> Leaf for One<'_, S> {
     #[inline(always)]
     fn closest(&mut self, _lane: usize, ray: &mut Ray, items: Range<u32>) {
         let block = &self.blocks[items.start as usize];
-        let corners = block.corners(self.simd, self.shear.axes);
-        let lines = Lines::of_one(self.simd, &self.shear, ray.t_min, ray.t_max);
-        let Some(meeting) = lines.meet(self.simd, corners, (1 << items.len()) - 1) else { return };
-        for lane in Bits(meeting.mask) {
-            let t = self.shear.clamp(meeting.t[lane], block.permuted(lane, self.shear.axes));
-            let index = block.index[lane];
-            let nearer = t < ray.t_max || t == ray.t_max && self.hit.is_none_or(|best| index < best.index);
-            if ray.t_min <= t && nearer {
-                self.hit = Some(TriangleHit { t, u: meeting.u[lane], v: meeting.v[lane], index });
-                ray.t_max = t;
+        for lane in Bits(self.candidates(ray, block, items.len())) {
+            if let Some(hit) = block.hit(&self.shear, ray.t_min, ray.t_max, lane)
+                && hit.is_before(&self.hit)
+            {
+                self.hit = Some(hit);
+                ray.t_max = hit.t;
             }
         }
     }
@@ -53,12 +58,11 @@ impl<S: Lanes> Leaf for One<'_, S> {
     #[inline(always)]
     fn any(&mut self, _lane: usize, ray: &Ray, items: Range<u32>) -> bool {
         let block = &self.blocks[items.start as usize];
-        let corners = block.corners(self.simd, self.shear.axes);
-        let lines = Lines::of_one(self.simd, &self.shear, ray.t_min, ray.t_max);
-        let Some(meeting) = lines.meet(self.simd, corners, (1 << items.len()) - 1) else { return false };
-        Bits(meeting.mask).any(|lane| {
-            let t = self.shear.clamp(meeting.t[lane], block.permuted(lane, self.shear.axes));
-            ray.t_min <= t && t <= ray.t_max
-        })
+        for lane in Bits(self.candidates(ray, block, items.len())) {
+            if block.hit(&self.shear, ray.t_min, ray.t_max, lane).is_some() {
+                return true;
+            }
+        }
+        false
     }
 }

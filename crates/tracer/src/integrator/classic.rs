@@ -166,7 +166,7 @@ fn light(lamp: &Lamp, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut 
         if reflected.is_black() {
             continue;
         }
-        let ray = seen.surface.spawn(sample.wi, seen.time).up_to(sample.distance);
+        let ray = seen.surface.spawn_to(sample.wi, sample.distance, seen.time);
         emit.if_light_visible(number, ray, reflected * sample.radiance * share);
     }
 }

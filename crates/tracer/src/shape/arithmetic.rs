@@ -68,6 +68,17 @@ pub fn rounded_surface(point: DVec3, normal: DVec3, uv: Vec2) -> Surface {
     Surface::new(point, robust::gamma(2) * point.abs().dot(normal.abs()), normal, uv)
 }
 
+/// How far hits stay from edges, in sizes of a shape: more than a ray that leaves inwards is moved, so that it cannot
+/// start beyond the wall that joins there.
+pub const EDGE: f32 = robust::gamma(32);
+
+/// `value` between `low` and `high`, and not closer to them than `margin` where there is room.
+#[inline]
+pub fn clamp_within(value: f32, low: f32, high: f32, margin: f32) -> f32 {
+    let margin = margin.min(0.25 * (high - low));
+    value.max(low + margin).min(high - margin)
+}
+
 /// The angle about the y axis as a fraction of a turn in [0, 1): 0 towards +x, a quarter towards -z
 /// (counter-clockwise seen from above).
 pub fn turn(x: f32, z: f32) -> f32 {

@@ -7,7 +7,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::arithmetic::{double, first_in_range};
+use super::arithmetic::{EDGE, clamp_within, double, first_in_range};
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
@@ -122,7 +122,10 @@ impl Shape for Cuboid {
         let (axis, far) = axis_and_side(hit.part);
         let plane = if far { self.max[axis] } else { self.min[axis] };
         let t = (f64::from(plane) - origin[axis]) / direction[axis];
-        let mut point = (origin + direction * t).as_vec3().clamp(self.min, self.max);
+        let found = (origin + direction * t).as_vec3();
+        let margin = EDGE * (self.max - self.min).max_element();
+        let within = |axis: usize| clamp_within(found[axis], self.min[axis], self.max[axis], margin);
+        let mut point = Vec3::new(within(0), within(1), within(2));
         point[axis] = plane;
         let unit = (point - self.min) / (self.max - self.min);
         Surface::new(point, 0.0, Self::normal(hit.part), Self::uv(hit.part, unit))

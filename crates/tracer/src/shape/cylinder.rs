@@ -9,7 +9,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
-use super::arithmetic::{cross_tube, double, first_in_range, turn};
+use super::arithmetic::{EDGE, clamp_within, cross_tube, double, first_in_range, turn};
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::tube::tube_surface;
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
@@ -97,9 +97,9 @@ impl Cylinder {
         let (y, normal) = if part == TOP { (self.y_max, Vec3::Y) } else { (self.y_min, Vec3::NEG_Y) };
         let t = (f64::from(y) - origin.y) / direction.y;
         let found = (origin + direction * t).as_vec3();
-        let edge = self.radius;
-        let point = Vec3::new(found.x.clamp(-edge, edge), y, found.z.clamp(-edge, edge));
-        let inwards = 1.0 - Vec2::new(point.x, point.z).length() / self.radius;
+        let across = Vec2::new(found.x, found.z).clamp_length_max(self.radius * (1.0 - EDGE));
+        let point = Vec3::new(across.x, y, across.y);
+        let inwards = 1.0 - across.length() / self.radius;
         Surface::new(point, 0.0, normal, Vec2::new(turn(point.x, point.z), inwards.max(0.0)))
     }
 }
@@ -141,7 +141,8 @@ impl Shape for Cylinder {
             return self.cap_surface(ray, hit.part);
         }
         let side = tube_surface(self.radius, ray, hit);
-        let point = side.point.with_y(side.point.y.clamp(self.y_min, self.y_max));
+        let margin = EDGE * self.radius.max(self.y_max - self.y_min);
+        let point = side.point.with_y(clamp_within(side.point.y, self.y_min, self.y_max, margin));
         let v = (point.y - self.y_min) / (self.y_max - self.y_min);
         Surface { point, local: point, uv: side.uv.with_y(v), ..side }
     }

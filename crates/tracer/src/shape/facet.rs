@@ -1,8 +1,12 @@
 //! One triangle with what its corners carry: position, shading normal, surface coordinates.
 
-use super::arithmetic::double;
+use super::arithmetic::{EDGE, double};
 use crate::surface::Surface;
 use juggler_math::{DVec2, DVec3, Ray, Vec2, Vec3, robust};
+
+/// Places with a barycentric below this are looked at more closely: [`EDGE`] for triangles up to 60 times as long as
+/// they are wide.
+const BESIDE_EDGE: f64 = 1.0 / 4096.0;
 
 /// A triangle of a mesh, or one that stands alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,14 +42,15 @@ impl Facet {
     /// The surface where a ray hits; `near` are barycentrics of the second and third corner, to be refined.
     /// Without surface coordinates of its own, it gives the barycentrics.
     pub fn surface(&self, ray: &Ray, near: Vec2) -> Surface {
-        let at = self.refined(ray, near.as_dvec2());
-        let (point, normal) = self.point(at);
         let [a, b, c] = self.corners;
         let size = (b - a).abs().max((c - a).abs()).max_element();
-        // The triangle test is in f32, and the more slender the triangle, the more it is off (measured for random
-        // triangles with sides up to 100,000 : 1: at most 1.3 half ulps of size times slenderness).
-        let slender = (f64::from(size * size) / self.winding().length()) as f32;
-        let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(4) * size * slender.max(1.0);
+        let at = self.refined(ray, near.as_dvec2());
+        let beside_edge = at.min_element().min(1.0 - at.x - at.y) < BESIDE_EDGE;
+        let at = if beside_edge { self.inwards(at, f64::from(EDGE * size)) } else { at };
+        let (point, normal) = self.point(at);
+        // The triangle test takes the corners to the ray in f32: each is off by up to 4 half ulps of the way there
+        // (measured from close by, for triangles with sides up to 100,000 : 1: a quarter of one).
+        let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(4) * size;
         let at = at.as_vec2();
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
         Surface { shading_normal: self.shading_normal(normal, at), ..Surface::new(point, error, normal, uv) }
@@ -64,6 +69,18 @@ impl Facet {
         let across = DVec2::new(from_a.cross(c - a).dot(winding), (b - a).cross(from_a).dot(winding));
         let inside = (across / winding.length_squared()).clamp(DVec2::ZERO, DVec2::ONE);
         inside / (inside.x + inside.y).max(1.0)
+    }
+
+    /// A place moved by `margin` towards the centre of the inscribed circle, and so as far from each edge that it was
+    /// close to.
+    #[cold]
+    fn inwards(&self, at: DVec2, margin: f64) -> DVec2 {
+        let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
+        let sides = DVec3::new((c - b).length(), (a - c).length(), (b - a).length());
+        let around = sides.element_sum();
+        let radius = self.winding().length() / around;
+        let centre = DVec2::new(sides.y, sides.z) / around;
+        at.lerp(centre, (margin / radius).min(0.5))
     }
 
     /// The interpolated normal, kept on the front: a triangle wound against its normals has them turned round,

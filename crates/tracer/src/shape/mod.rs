@@ -6,7 +6,7 @@ use juggler_math::{Aabb, Ray, Vec2, Vec3};
 mod arithmetic;
 mod check;
 #[cfg(test)]
-mod contract;
+pub mod contract;
 mod facet;
 mod solid_angle;
 
@@ -22,7 +22,7 @@ mod triangle;
 mod tube;
 
 pub use mesh::MeshData;
-pub use sphere::{cross_sphere, intersect_sphere, sphere_surface};
+pub use sphere::{cross_sphere, intersect_sphere, longitude_latitude, sphere_surface};
 
 /// What a ray found: 16 bytes, all that traversal carries.
 #[derive(Clone, Copy, Debug, PartialEq)]

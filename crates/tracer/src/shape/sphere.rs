@@ -72,6 +72,9 @@ pub fn intersect_sphere(center: Vec3, radius: f32, ray: &Ray) -> Option<Hit> {
     in_range(ray, near.0 / near.1, 0).or_else(|| in_range(ray, far.0 / far.1, 1))
 }
 
+/// How exact [`sphere_surface`] is at best, in radii: twice what its step of Newton's iteration leaves.
+const LEAST_ERROR: f32 = f32::EPSILON / 128.0;
+
 /// The surface at a hit that [`intersect_sphere`] gave for this ray; `local` is relative to the centre. Its `uv`
 /// is left out: two arc tangents that most materials never ask for.
 #[inline(always)]
@@ -86,7 +89,8 @@ pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surfac
     // Within 2^-16 of unit length by now; one step of Newton's iteration for 1/√x leaves less than 2^-32.
     let unit = off * (1.5 - 0.5 * off.length_squared());
     let (point, normal) = ((center + unit * wide).as_vec3(), unit.as_vec3());
-    let error = robust::gamma(2) * point.abs().dot(normal.abs());
+    // Near the origin of coordinates rounding to f32 leaves less than that step does.
+    let error = (robust::gamma(2) * point.abs().dot(normal.abs())).max(LEAST_ERROR * radius);
     Surface { point, error, normal, shading_normal: normal, uv: Vec2::ZERO, local: normal * radius }
 }
 
@@ -97,7 +101,8 @@ fn root(origin: DVec3, direction: DVec3, radius: f64, hit: &Hit) -> f64 {
     crossing.map_or(f64::from(hit.t), |(near, far)| if hit.part == 0 { near } else { far })
 }
 
-fn longitude_latitude(n: Vec3) -> Vec2 {
+/// Surface coordinates of a sphere where its unit normal is `n`, object space.
+pub fn longitude_latitude(n: Vec3) -> Vec2 {
     let across = (n.x * n.x + n.z * n.z).sqrt();
     Vec2::new(turn(n.x, n.z), 0.5 + fun::atan2(n.y, across) / PI)
 }

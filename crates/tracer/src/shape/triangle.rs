@@ -115,3 +115,36 @@ impl Triangle {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::Random;
+
+    /// A ray that leaves is not taken back however slender the triangle, nor does it start farther off for it.
+    #[test]
+    fn slender_triangles_need_no_more_room_than_others() {
+        let mut random = Random::new(35);
+        for (slender, far) in [1.0f32, 30.0, 1e3, 1e5].into_iter().flat_map(|s| [0.0, 1.0, 100.0].map(|far| (s, far))) {
+            for _ in 0..5_000 {
+                let (a, along) = (random.unit_vector() * far, random.unit_vector());
+                let c = a + along * random.f32() + random.unit_vector() / slender;
+                let triangle = Triangle::new([a, a + along, c]);
+                let at = warp::uniform_triangle(random.vec2()).truncate().as_dvec2();
+                let (point, normal) = triangle.facet().point(at);
+                let aim = Ray::new(point + random.unit_vector(), Vec3::ZERO);
+                let aim = Ray { direction: point - aim.origin, ..aim };
+                let Some(hit) = triangle.intersect(&aim) else { continue };
+                let surface = triangle.surface(&aim, &hit);
+                let direction = random.unit_vector();
+                if direction.dot(normal).abs() < 1e-4 {
+                    continue;
+                }
+                let ray = surface.spawn(direction, 0.0);
+                assert!(triangle.intersect(&ray).is_none(), "{triangle:?} {surface:?} {direction}");
+                let moved = ray.origin.distance(surface.point);
+                assert!(moved <= 12.0 * f32::EPSILON * (far + 1.0), "{triangle:?} {surface:?}: {moved}");
+            }
+        }
+    }
+}

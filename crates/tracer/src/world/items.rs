@@ -2,7 +2,7 @@
 
 use super::Object;
 use crate::material::MaterialTable;
-use crate::shape::{AnyShape, Hit, intersect_sphere, sphere_surface};
+use crate::shape::{AnyShape, Hit, intersect_sphere, longitude_latitude, sphere_surface};
 use crate::surface::Surface;
 use juggler_math::{Ray, Transform, Vec3};
 
@@ -53,13 +53,25 @@ impl Placed {
     #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         match self.sphere {
-            Some((center, radius)) if self.plain => sphere_surface(center, radius, ray, hit),
+            Some((center, radius)) => {
+                let surface = sphere_surface(center, radius, ray, hit);
+                if self.plain { surface } else { self.textured(surface) }
+            }
             None if self.unmoved => self.object.shape.surface(ray, hit),
-            _ => {
+            None => {
                 let transform = &self.object.transform;
                 self.object.shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
             }
         }
+    }
+
+    /// The surface of a sphere in the world with what its textures ask for. The point stays where the world's
+    /// arithmetic found it: by that of object space, rays that leave it could meet the sphere again.
+    #[inline(never)]
+    fn textured(&self, surface: Surface) -> Surface {
+        let outwards = self.object.transform.vector_to_local(surface.normal).normalize();
+        let AnyShape::Sphere(sphere) = &self.object.shape else { return surface };
+        Surface { uv: longitude_latitude(outwards), local: outwards * sphere.radius, ..surface }
     }
 }
 

@@ -14,6 +14,8 @@ mod items;
 mod trace;
 
 #[cfg(test)]
+mod precision;
+#[cfg(test)]
 mod tests;
 
 use items::{Item, Placed};

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::background::Solid;
-use crate::material::{MaterialCompiler, MaterialRef, Resolver};
+use crate::material::{Checkerboard, MaterialCompiler, MaterialRef, Resolver};
 use crate::texture::TextureTable;
 use juggler_math::testing::Random;
 
@@ -77,4 +77,13 @@ fn an_empty_world_is_empty() {
     assert!(!world.closest(&mut ray).is_some());
     assert_eq!(world.background(&ray), Rgb::WHITE);
     assert!(world.bounds().is_empty());
+}
+
+/// A world of one object, plain or with a material that asks for surface coordinates.
+pub fn world_of(shape: AnyShape, transform: Transform, textured: bool) -> World {
+    let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
+    let recipe = if textured { MaterialRef::from(Checkerboard::default()) } else { MaterialRef::default() };
+    let material = compiler.material("material", &recipe).unwrap();
+    let objects = vec![Object { shape, transform, material }];
+    World::new(objects, compiler.finish().unwrap(), Vec::new(), AnyBackground::Solid(Solid::default()))
 }

@@ -3,8 +3,7 @@
 use super::*;
 
 /// Distance to the surface.
-pub fn distance(shape: &AnyShape, point: Vec3) -> f64 {
-    let p = point.as_dvec3();
+pub fn distance(shape: &AnyShape, p: DVec3) -> f64 {
     let across = p.x.hypot(p.z);
     let beyond = |v: f64, low: f64, high: f64| (low - v).max(v - high).max(0.0);
     match shape {

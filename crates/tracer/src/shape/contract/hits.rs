@@ -35,7 +35,7 @@ fn for_every_hit(seed: u64, mut check: impl FnMut(&AnyShape, &Ray, Hit)) {
 fn hits_lie_on_the_surface_within_the_stated_error_and_the_bounds() {
     for_every_hit(1, |shape, ray, hit| {
         let surface = shape.surface(ray, &hit);
-        let off = distance(shape, surface.point);
+        let off = distance(shape, surface.point.as_dvec3());
         // Beside the plane of a flat part, rounding may also carry a point over its rim.
         let (center, radius) = ball(shape);
         let rim = EPSILON * f64::from(surface.point.length().max(center.length() + radius));
@@ -60,7 +60,7 @@ fn ranges_are_kept_to_the_bit() {
         if let Some(second) = shape.intersect(&Ray { t_min: hit.t.next_up(), ..*ray }) {
             assert!(second.t > hit.t);
             assert!(!is_flat(shape), "{shape:?} {ray:?}");
-            let off = distance(shape, shape.surface(ray, &second).point);
+            let off = distance(shape, shape.surface(ray, &second).point.as_dvec3());
             assert!(off <= 1e-5 * f64::from(ball(shape).1), "{shape:?} {ray:?}: {off}");
         }
     });

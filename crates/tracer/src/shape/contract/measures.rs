@@ -63,7 +63,7 @@ fn samples_lie_on_the_surface_and_have_the_density_of_their_direction() {
             let (mut seen, mut hidden) = (0, 0);
             for _ in 0..200 {
                 let Some(sample) = shape.sample(from, random.vec2()) else { continue };
-                let off = distance(&shape, sample.point);
+                let off = distance(&shape, sample.point.as_dvec3());
                 let rounding = f64::from(f32::EPSILON * (4.0 * radius + 2.0 * sample.point.length()));
                 assert!(off <= rounding, "{shape:?} {from}: {off}");
                 assert!((sample.normal.length() - 1.0).abs() < 1e-6 && sample.pdf > 0.0 && sample.pdf.is_finite());

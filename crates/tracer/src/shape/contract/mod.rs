@@ -11,6 +11,8 @@ mod follow_up;
 mod hits;
 mod measures;
 
+pub use distance::distance;
+
 /// Chance of a false alarm of one statistical test.
 const SIGNIFICANCE: f64 = 1e-6;
 
@@ -22,7 +24,7 @@ fn shapes() -> Vec<AnyShape> {
 }
 
 /// A ball around a shape, or around the interesting part of one without end.
-fn ball(shape: &AnyShape) -> (Vec3, f32) {
+pub fn ball(shape: &AnyShape) -> (Vec3, f32) {
     match shape {
         AnyShape::Plane(_) => (Vec3::ZERO, 1.0),
         AnyShape::Tube(tube) => (Vec3::ZERO, 1.5 * tube.radius),
@@ -31,7 +33,7 @@ fn ball(shape: &AnyShape) -> (Vec3, f32) {
 }
 
 /// Whether the shape encloses space, its normals pointing out of it.
-fn is_solid(shape: &AnyShape) -> bool {
+pub fn is_solid(shape: &AnyShape) -> bool {
     match shape {
         AnyShape::Sphere(_) | AnyShape::Cuboid(_) | AnyShape::Tube(_) => true,
         AnyShape::Cylinder(cylinder) => cylinder.capped,
@@ -42,13 +44,13 @@ fn is_solid(shape: &AnyShape) -> bool {
 }
 
 /// Whether a line crosses the shape at most once.
-fn is_flat(shape: &AnyShape) -> bool {
+pub fn is_flat(shape: &AnyShape) -> bool {
     use AnyShape as Any;
     matches!(shape, Any::Plane(_) | Any::Disk(_) | Any::Rectangle(_) | Any::Triangle(_) | Any::Polygon(_))
 }
 
 /// Whether no part of the shape hides another from outside once back faces are left out.
-fn is_convex(shape: &AnyShape) -> bool {
+pub fn is_convex(shape: &AnyShape) -> bool {
     is_flat(shape) || is_solid(shape) && !matches!(shape, AnyShape::Mesh(_))
 }
 
