@@ -91,13 +91,14 @@ impl Bvh {
     /// Where several children are met, all are fetched: the nearest is needed next, the others soon.
     #[inline(always)]
     fn prefetch(&self, node: &Node, mask: u32, leaf: &impl Leaf) {
-        let more = mask & mask.wrapping_sub(1);
-        for slot in Bits(more) {
-            let child = node.children[slot];
+        let mut more = mask & mask.wrapping_sub(1);
+        while more != 0 {
+            let child = node.children[more.trailing_zeros() as usize & 7];
+            more &= more - 1;
             if child.is_leaf() {
                 leaf.prefetch(child.items());
-            } else if let Some(node) = self.nodes.get(child.0 as usize) {
-                prefetch(node);
+            } else {
+                prefetch(&self.nodes, child.0 as usize);
             }
         }
     }
@@ -141,7 +142,7 @@ impl Bvh {
 
 /// One of the children that are met; the others go onto the stack.
 #[inline(always)]
-fn first(node: &Node, mask: u32, stack: &mut Stack) -> Option<Child> {
+pub(crate) fn first(node: &Node, mask: u32, stack: &mut Stack) -> Option<Child> {
     if mask == 0 {
         return None;
     }
@@ -155,7 +156,7 @@ fn first(node: &Node, mask: u32, stack: &mut Stack) -> Option<Child> {
 
 /// The next child on the stack that is entered before `t_max`.
 #[inline(always)]
-fn next_below(stack: &mut Stack, base: usize, t_max: f32) -> Option<Child> {
+pub(crate) fn next_below(stack: &mut Stack, base: usize, t_max: f32) -> Option<Child> {
     while stack.len() > base {
         let entry = stack.pop()?;
         if distance(entry) <= t_max {

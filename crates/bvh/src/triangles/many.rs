@@ -111,11 +111,11 @@ impl<'a, S: Lanes> Many<'a, S> {
         }
     }
 
-    /// Rays that may hit the triangle in a lane of the block.
+    /// Active rays that may hit the triangle in a lane of the block.
     #[inline(always)]
-    fn rays_at(&self, block: &Block, number: usize) -> u32 {
+    fn rays_at(&self, block: &Block, number: usize, active: u32) -> u32 {
         let [a, b, c] = block.permuted(number, self.axes);
-        self.lines().candidates(self.simd, [splat(self.simd, a), splat(self.simd, b), splat(self.simd, c)])
+        self.lines().candidates(self.simd, [splat(self.simd, a), splat(self.simd, b), splat(self.simd, c)], active)
     }
 
     /// Triangles of a block that the packet may meet.
@@ -131,8 +131,8 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let (blocks, shear) = (self.blocks, self.shear(lane));
         let block = &blocks[items.start as usize];
         let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes));
-        for number in Bits(candidates & ((1 << items.len()) - 1)) {
+        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes), (1 << items.len()) - 1);
+        for number in Bits(candidates) {
             if let Some(hit) = block.hit(&shear, ray.t_min, ray.t_max, number) {
                 self.keep(lane, hit, ray);
             }
@@ -143,8 +143,8 @@ impl<S: Lanes> Leaf for Many<'_, S> {
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
         let (block, shear) = (&self.blocks[items.start as usize], self.shear(lane));
         let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes));
-        for number in Bits(candidates & ((1 << items.len()) - 1)) {
+        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes), (1 << items.len()) - 1);
+        for number in Bits(candidates) {
             if block.hit(&shear, ray.t_min, ray.t_max, number).is_some() {
                 return true;
             }
@@ -157,7 +157,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
         for number in Bits(self.candidates(block, items.len())) {
-            for lane in Bits(self.rays_at(block, number) & active) {
+            for lane in Bits(self.rays_at(block, number, active)) {
                 if let Some(hit) = block.hit(&self.shear(lane), rays[lane].t_min, rays[lane].t_max, number) {
                     self.keep(lane, hit, &mut rays[lane]);
                 }
@@ -170,7 +170,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &self.blocks[items.start as usize];
         let mut found = 0;
         for number in Bits(self.candidates(block, items.len())) {
-            for lane in Bits(self.rays_at(block, number) & active & !found) {
+            for lane in Bits(self.rays_at(block, number, active & !found)) {
                 let hit = block.hit(&self.shear(lane), rays[lane].t_min, rays[lane].t_max, number);
                 found |= u32::from(hit.is_some()) << lane;
             }

@@ -44,17 +44,21 @@ impl<S: Lanes> Lines<S> {
         [x - self.factors[0] * z, y - self.factors[1] * z, z]
     }
 
-    /// Lanes that may hit (bit per lane): whose line passes no two edges on different sides, and passes within
+    /// Lanes in `among` that may hit (bit per lane): whose line passes no two edges on different sides, and passes within
     /// its range between the least and the largest depth of the corners.
     #[inline(always)]
-    pub fn candidates(&self, simd: S, corners: [Corner<S>; 3]) -> u32 {
+    pub fn candidates(&self, simd: S, corners: [Corner<S>; 3], among: u32) -> u32 {
         let (a, b, c) = (self.project(&corners[0]), self.project(&corners[1]), self.project(&corners[2]));
         let [u, v, w] = edges([[a[0], a[1]], [b[0], b[1]], [c[0], c[1]]]);
         let zero = simd.splat(0.0);
         let outside = simd.least(u, simd.least(v, w)).simd_lt(zero) & simd.most(u, simd.most(v, w)).simd_gt(zero);
+        let inside = among & !bits(outside);
+        if inside == 0 {
+            return 0;
+        }
         let (a, b, c) = (a[2] * self.factors[2], b[2] * self.factors[2], c[2] * self.factors[2]);
         let start = simd.least(a, simd.least(b, c)).simd_le(self.t_max);
         let end = simd.most(a, simd.most(b, c)).simd_ge(self.t_min);
-        bits(start & end) & !bits(outside)
+        inside & bits(start & end)
     }
 }

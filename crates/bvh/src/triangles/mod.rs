@@ -1,6 +1,7 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
 mod build;
+mod in_flight;
 mod many;
 mod meet;
 mod one;
@@ -25,6 +26,8 @@ use std::fmt;
 use std::ops::Range;
 
 const LANES: usize = 8;
+/// Trees of up to as many bytes stay near enough (measured).
+const IN_CACHE: usize = 8 << 20;
 const GROWTH: f32 = 8.0 * f32::EPSILON;
 
 /// Where a ray meets a triangle.
@@ -172,19 +175,34 @@ impl TriangleBvh {
     /// [`TriangleBvh::closest`] for any number of unrelated rays, see [`Bvh::closest_batch`]. The answers
     /// replace what `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
     pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let count = rays.len().min(hits.len());
+        let (rays, hits) = (&mut rays[..count], &mut hits[..count]);
+        if self.is_beyond_cache() {
+            dispatch!(self.bvh.level, simd => self.closest_in_flight(simd, rays, hits));
+            return;
+        }
         for (ray, hit) in rays.iter_mut().zip(hits) {
             *hit = self.closest(ray);
-            if let Some(hit) = hit {
-                ray.t_max = hit.t;
-            }
+            ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
         }
     }
 
     /// [`TriangleBvh::any`] for any number of unrelated rays, see [`Bvh::any_batch`].
     pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
+        let count = rays.len().min(occluded.len());
+        let (rays, occluded) = (&rays[..count], &mut occluded[..count]);
+        if self.is_beyond_cache() {
+            dispatch!(self.bvh.level, simd => self.any_in_flight(simd, rays, occluded));
+            return;
+        }
         for (ray, occluded) in rays.iter().zip(occluded) {
             *occluded = self.any(ray);
         }
+    }
+
+    /// Whether rays wait for memory so long that several under way at once pay.
+    fn is_beyond_cache(&self) -> bool {
+        self.bytes() > IN_CACHE
     }
 
     /// What the search for the closest hit looks at.
