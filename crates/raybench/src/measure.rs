@@ -75,14 +75,19 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Millions of rays a second of one thread's time on the processor; median.
+    /// Millions of rays a second of one thread's time on the processor; median, NaN without rays.
     pub fn cpu_rate(&self) -> f64 {
-        self.rays as f64 * 1e-6 / median(self.repeats.iter().map(|time| time.cpu))
+        self.rate(|time| time.cpu)
     }
 
-    /// Millions of rays a second of all threads together, by the wall's clock; median.
+    /// Millions of rays a second of all threads together, by the wall's clock; median, NaN without rays.
     pub fn wall_rate(&self) -> f64 {
-        self.rays as f64 * 1e-6 / median(self.repeats.iter().map(|time| time.wall))
+        self.rate(|time| time.wall)
+    }
+
+    fn rate(&self, seconds: fn(&Elapsed) -> f64) -> f64 {
+        let rays = if self.rays == 0 { f64::NAN } else { self.rays as f64 };
+        rays * 1e-6 / median(self.repeats.iter().map(seconds))
     }
 
     /// How many times as fast as the other, by time on the processor: median of the ratios of each repeat.

@@ -36,6 +36,14 @@ fn wrong_command_lines() {
         "render ball.json -o a.webp --size 20000x1",
         "compare ball.json",
         "bench nothing",
+        "bench rays blob:0",
+        "bench rays blob:3 --kind primery",
+        "bench rays blob:3 --kernel packet,none",
+        "bench rays blob:3 --quality good",
+        "bench rays blob:3 --rays 1",
+        "bench rays blob:3 --repeats 0",
+        "bench rays .",
+        "bench rays ball.json",
     ] {
         let message = folder.bad(line, 2);
         assert!(!message.trim().is_empty(), "{line}");
@@ -53,6 +61,11 @@ fn names_that_were_probably_meant() {
     assert!(folder.bad("render ball.json --integrator clasic", 2).contains("did you mean `classic`?"));
     assert!(folder.bad("render ball.json --camera mian", 2).contains("did you mean `main`?"));
     assert!(folder.bad("render ball.json --smaples 3", 2).contains("--samples"));
+    let message = folder.bad("bench rays blbo", 2);
+    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`, did you mean `blob`?\n");
+    assert!(folder.bad("bench rays blbo:7", 2).contains("did you mean `blob`?"));
+    assert_eq!(folder.bad("bench rays none.ply", 3), "error: no file is called `none.ply`\n");
+    assert!(folder.bad("bench rays blob:3 --kind primery", 2).contains("'primary'"));
 }
 
 #[test]
