@@ -11,6 +11,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rays that a thread takes at a time.
 const CHUNK: usize = 4096;
+/// Fewer rays than this are traced again and again, so that what is timed is neither short nor a single chunk.
+const LEAST: usize = 1 << 16;
 
 /// What rays came to, to see whether tracers agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -119,23 +121,26 @@ pub fn in_turns(rays: &[Ray], tracers: &[Trace], threads: usize, repeats: usize)
     timings
 }
 
-/// Traces all rays once; threads take the next few thousand when they have done theirs.
+/// Traces all rays, few ones many times; threads take the next few thousand when they have done theirs. Time and sums
+/// are those of one pass.
 fn run(rays: &[Ray], trace: Trace, threads: usize) -> (Elapsed, Sums) {
-    let next = AtomicUsize::new(0);
+    let passes = (LEAST / rays.len().max(1)).max(1);
+    let (next, chunks) = (AtomicUsize::new(0), rays.len().div_ceil(CHUNK));
     let work = || {
         let (watch, mut scratch, mut sums) = (Stopwatch::start(Of::Thread), Scratch::default(), Sums::default());
         loop {
-            let start = next.fetch_add(CHUNK, Ordering::Relaxed).min(rays.len());
-            let chunk = &rays[start..(start + CHUNK).min(rays.len())];
-            if chunk.is_empty() {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= chunks * passes {
                 return (watch.elapsed().cpu, sums);
             }
+            let start = number % chunks * CHUNK;
+            let chunk = &rays[start..(start + CHUNK).min(rays.len())];
             sums = [sums, trace(chunk, &mut scratch)].into_iter().sum();
         }
     };
     let watch = Stopwatch::start(Of::Thread);
     let mut cpu = 0.0;
-    let sums = std::thread::scope(|scope| {
+    let sums: Sums = std::thread::scope(|scope| {
         let others: Vec<_> = (1..threads.max(1)).map(|_| scope.spawn(work)).collect();
         let own = work();
         // A thread that panicked has said so; its rays are then missing from the sums.
@@ -146,7 +151,9 @@ fn run(rays: &[Ray], trace: Trace, threads: usize) -> (Elapsed, Sums) {
         };
         parts.map(count).sum()
     });
-    (Elapsed { wall: watch.elapsed().wall, cpu }, sums)
+    let one = |all: f64| all / passes as f64;
+    let sums = Sums { hits: sums.hits / passes as u64, distance: one(sums.distance) };
+    (Elapsed { wall: one(watch.elapsed().wall), cpu: one(cpu) }, sums)
 }
 
 #[cfg(test)]

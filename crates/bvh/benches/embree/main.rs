@@ -64,7 +64,7 @@ fn scene(api: &Api, name: &str, recipe: &Recipe, options: &Options, targets: &mu
     let device = Device::new(api, 1, &mesh)?;
     let (fast, _) = device.build(options.quality, false)?;
     let (robust, _) = device.build(options.quality, true)?;
-    println!("\n  Embree {}, {} threads of its own", device.version(), 1);
+    println!("\n  answers of Juggler and of Embree {}", device.version());
     let mut bvhs = Vec::new();
     for tree in TREES {
         bvhs.push((tree, (tree.build)(&mesh, options.quality).map_err(|error| error.to_string())?));
@@ -77,15 +77,15 @@ fn scene(api: &Api, name: &str, recipe: &Recipe, options: &Options, targets: &mu
     }
     let mut tracers = Vec::new();
     for (test, watertight, scene) in [("fast", false, &fast), ("robust", true, &robust)] {
-        let calls = [Call::Single, Call::Packet, Call::Coherent].into_iter();
+        let compared = |call: &Call| options.calls.iter().any(|ours| ours.rivals(*call));
+        let calls = Call::EMBREES.into_iter().filter(compared);
         tracers.extend(calls.map(|call| Tracer { test, watertight, call, tree: Tree::Embree(scene) }));
     }
     for (tree, bvh) in &bvhs {
-        let calls = [Call::Single, Call::Batch, Call::Packet].into_iter();
+        let calls = options.calls.iter().copied();
         let tracer = |call| Tracer { test: tree.name, watertight: tree.watertight, call, tree: Tree::Juggler(bvh) };
         tracers.extend(calls.map(tracer));
     }
-    tracers.retain(|tracer| options.calls.contains(&tracer.call));
     rates::measure(&tracers, &sets, options, targets);
     Ok(())
 }

@@ -21,7 +21,18 @@ pub enum Call {
 }
 
 impl Call {
-    pub const ALL: [Self; 4] = [Self::Single, Self::Batch, Self::Packet, Self::Coherent];
+    pub const OURS: [Self; 3] = [Self::Single, Self::Batch, Self::Packet];
+    pub const EMBREES: [Self; 3] = [Self::Single, Self::Packet, Self::Coherent];
+
+    /// Whether this call of ours may be compared with that of Embree's: single ones with single ones, packets with
+    /// packets that have the hint, batches with all.
+    pub fn rivals(self, embrees: Self) -> bool {
+        match self {
+            Self::Single => embrees == Self::Single,
+            Self::Batch => true,
+            Self::Packet | Self::Coherent => embrees == Self::Coherent,
+        }
+    }
 
     pub fn name(self) -> &'static str {
         match self {
@@ -37,6 +48,7 @@ impl Call {
 pub struct Options {
     pub scenes: Vec<(String, Recipe)>,
     pub kinds: Vec<Kind>,
+    /// Of Juggler; of Embree those that they are compared with.
     pub calls: Vec<Call>,
     pub quality: Quality,
     /// Camera rays.
@@ -49,7 +61,7 @@ pub struct Options {
 }
 
 pub const HELP: &str = "words after `--`: scenes (blob, classroom, hall, stadium, hairball, terrain, NAME:SIZE, all),
-kinds (primary, shadow, ao, diffuse, diffuse2, random), calls (single, batch, packet, coherent),
+kinds (primary, shadow, ao, diffuse, diffuse2, random), our kernels (single, batch, packet),
 rays=100000 repeats=5 threads=1,2 build=1,2 (build=0: none) quality=fast|balanced|best";
 
 impl Options {
@@ -92,7 +104,7 @@ impl Options {
     fn add(&mut self, word: &str) -> Result<(), String> {
         if let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == word) {
             self.kinds.push(kind);
-        } else if let Some(call) = Call::ALL.into_iter().find(|call| call.name() == word) {
+        } else if let Some(call) = Call::OURS.into_iter().find(|call| call.name() == word) {
             self.calls.push(call);
         } else if word == "all" {
             BUILT_IN.iter().try_for_each(|kind| self.add(kind.name))?;
@@ -111,7 +123,7 @@ impl Options {
             self.kinds = Kind::ALL.to_vec();
         }
         if self.calls.is_empty() {
-            self.calls = Call::ALL.to_vec();
+            self.calls = Call::OURS.to_vec();
         }
         if self.threads.is_empty() {
             self.threads = vec![1];

@@ -38,12 +38,12 @@ fn column(tracers: &[Tracer], set: &RaySet, threads: usize, repeats: usize) -> C
         .collect();
     let traces: Vec<Trace> = closures.iter().map(|closure| closure as Trace).collect();
     let timings = in_turns(&set.rays, &traces, threads, repeats);
-    for (tracer, timing) in tracers.iter().zip(&timings).filter(|(tracer, _)| tracer.is_ours()) {
-        let same = |other: &&(&Tracer, &Timing)| other.0.is_ours() && other.0.test == tracer.test;
-        let first = tracers.iter().zip(&timings).collect::<Vec<_>>();
-        if let Some((other, sums)) = first.iter().find(same).filter(|(_, first)| !first.sums.agrees(&timing.sums)) {
-            let (kind, own) = (set.kind.name(), tracer.label());
-            println!("  WRONG, {kind}: {}: {}; {own}: {}", other.label(), sums.sums, timing.sums);
+    for (row, tracer) in tracers.iter().enumerate() {
+        let alike =
+            |other: &usize| tracers[*other].is_ours() && tracer.is_ours() && tracers[*other].test == tracer.test;
+        if let Some(other) = (0..row).find(alike).filter(|other| !timings[*other].sums.agrees(&timings[row].sums)) {
+            let [one, two] = [other, row].map(|row| format!("{}: {}", tracers[row].label(), timings[row].sums));
+            println!("  WRONG, {}: {one}; {two}", set.kind.name());
         }
     }
     Column { kind: set.kind, timings }
@@ -54,18 +54,14 @@ fn column(tracers: &[Tracer], set: &RaySet, threads: usize, repeats: usize) -> C
 fn counterpart<'c>(tracers: &[Tracer], column: &'c Column, ours: &Tracer) -> Option<&'c Timing> {
     let theirs = tracers.iter().zip(&column.timings);
     let like = theirs.filter(|(tracer, _)| !tracer.is_ours() && tracer.watertight == ours.watertight);
-    let fits = like.filter(|(tracer, _)| match ours.call {
-        Call::Single => tracer.call == Call::Single,
-        Call::Packet | Call::Coherent => tracer.call == Call::Coherent,
-        Call::Batch => true,
-    });
+    let fits = like.filter(|(tracer, _)| ours.call.rivals(tracer.call));
     fits.map(|(_, timing)| timing).max_by(|a, b| a.cpu_rate().total_cmp(&b.cpu_rate()))
 }
 
 fn print(tracers: &[Tracer], columns: &[Column], threads: usize) {
-    let what = if threads == 1 { "by CPU time" } else { "by wall time" };
+    let clock = if threads == 1 { "CPU" } else { "wall" };
     let kinds: String = columns.iter().map(|column| format!("{:>16}", column.kind.name())).collect();
-    println!("\n  {:<30}{kinds}", format!("Mrays/s {what}, {threads} threads"));
+    println!("\n  {:<30}{kinds}", format!("Mrays/s ({clock}), {threads} threads"));
     for (row, tracer) in tracers.iter().enumerate() {
         let cell = |column: &Column| {
             let timing = &column.timings[row];
