@@ -86,7 +86,8 @@ impl Rays {
         for subject in &subjects {
             let report = self.measure(subject, &pool)?;
             if !self.json {
-                console::print(&report.to_words())?;
+                let gap = if reports.is_empty() { "" } else { "\n" };
+                console::print(&format!("{gap}{}", report.to_words()))?;
             }
             reports.push(report);
         }
