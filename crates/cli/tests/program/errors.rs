@@ -36,19 +36,27 @@ fn wrong_command_lines() {
         "render ball.json -o a.webp --size 20000x1",
         "compare ball.json",
         "bench nothing",
-        "bench rays blob:0",
-        "bench rays blob:3 --kind primery",
-        "bench rays blob:3 --kernel packet,none",
-        "bench rays blob:3 --quality good",
-        "bench rays blob:3 --rays 1",
-        "bench rays blob:3 --repeats 0",
-        "bench rays .",
-        "bench rays ball.json",
     ] {
         let message = folder.bad(line, 2);
         assert!(!message.trim().is_empty(), "{line}");
         assert_eq!(folder.files(), [""; 0], "{line}");
     }
+}
+
+#[test]
+fn rays_that_cannot_be_measured() {
+    let folder = Folder::new();
+    for line in ["blob:0", "blob:3 --kind primery", "blob:3 --kernel packet,none", "blob:3 --quality good"] {
+        folder.bad(&format!("bench rays {line}"), 2);
+    }
+    for line in ["blob:3 --rays 1", "blob:3 --repeats 0", ".", "ball.json"] {
+        assert!(!folder.bad(&format!("bench rays {line}"), 2).trim().is_empty(), "{line}");
+    }
+    let message = folder.bad("bench rays blbo", 2);
+    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`, did you mean `blob`?\n");
+    assert!(folder.bad("bench rays blbo:7", 2).contains("did you mean `blob`?"));
+    assert_eq!(folder.bad("bench rays none.ply", 3), "error: no file is called `none.ply`\n");
+    assert!(folder.bad("bench rays blob:3 --kind primery", 2).contains("'primary'"));
 }
 
 #[test]
@@ -61,11 +69,6 @@ fn names_that_were_probably_meant() {
     assert!(folder.bad("render ball.json --integrator clasic", 2).contains("did you mean `classic`?"));
     assert!(folder.bad("render ball.json --camera mian", 2).contains("did you mean `main`?"));
     assert!(folder.bad("render ball.json --smaples 3", 2).contains("--samples"));
-    let message = folder.bad("bench rays blbo", 2);
-    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`, did you mean `blob`?\n");
-    assert!(folder.bad("bench rays blbo:7", 2).contains("did you mean `blob`?"));
-    assert_eq!(folder.bad("bench rays none.ply", 3), "error: no file is called `none.ply`\n");
-    assert!(folder.bad("bench rays blob:3 --kind primery", 2).contains("'primary'"));
 }
 
 #[test]
