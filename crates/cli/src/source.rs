@@ -31,7 +31,7 @@ pub fn load(name: &str) -> Result<Scene, Failure> {
     if path.is_dir() {
         return Err(Failure::Wrong(format!("`{name}` is a folder, not a scene file")));
     }
-    Err(unknown(name))
+    Err(unknown(name, "scene", built_in_scenes().iter().map(|scene| scene.name)))
 }
 
 fn standard_input() -> Result<String, Failure> {
@@ -51,8 +51,9 @@ pub fn stem(name: &str) -> &str {
     stem.filter(|stem| *stem != STANDARD_INPUT).unwrap_or("picture")
 }
 
-/// Somebody who writes an ending or a folder means a file, and the file is missing; else the name is wrong.
-fn unknown(name: &str) -> Failure {
+/// What to say of a name that leads to no file and to nothing built in. Somebody who writes an ending or a folder means
+/// a file, and the file is missing; else the name is wrong.
+pub fn unknown<'n>(name: &str, what: &str, built_in: impl IntoIterator<Item = &'n str>) -> Failure {
     let path = Path::new(name);
     let folder = path.parent().unwrap_or(Path::new(""));
     let files = names_in(folder);
@@ -62,9 +63,10 @@ fn unknown(name: &str) -> Failure {
         let meant = near(&files).map(|near| folder.join(near).display().to_string());
         return Failure::System(format!("no file is called `{name}`{}", question(meant)));
     }
-    let built_in: Vec<String> = built_in_scenes().iter().map(|scene| scene.name.to_owned()).collect();
-    let meant = near(&built_in).or_else(|| near(&files));
-    Failure::Wrong(format!("no file and no built-in scene is called `{name}`{}", question(meant)))
+    // What follows a colon is the size of a built-in mesh.
+    let bare = file_name.split(':').next().unwrap_or_default();
+    let meant = closest(bare, built_in).map(str::to_owned).or_else(|| near(&files));
+    Failure::Wrong(format!("no file and no built-in {what} is called `{name}`{}", question(meant)))
 }
 
 fn question(meant: Option<String>) -> String {

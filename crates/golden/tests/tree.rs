@@ -8,6 +8,9 @@ use std::process::Command;
 /// Lines a source file may have, tests included.
 const MAX_LINES: usize = 400;
 
+/// The only files with `unsafe` in them, below `crates`.
+const UNSAFE: &[&str] = &["bvh/benches/embree/ffi.rs"];
+
 /// Licences that the project's users can live with (SPDX; an expression needs one fit alternative).
 const LICENCES: &[&str] = &[
     "MIT",
@@ -49,6 +52,29 @@ fn no_source_file_is_long() {
         .map(|(path, lines)| format!("{}: {lines} lines", path.display()))
         .collect();
     assert!(long.is_empty(), "over {MAX_LINES} lines:\n{}", long.join("\n"));
+}
+
+#[test]
+fn unsafe_stands_only_where_it_was_agreed_on() {
+    let crates = root().join("crates");
+    let own = crates.join("golden/tests/tree.rs");
+    let lifted = |path: &Path| path != own && std::fs::read_to_string(path).unwrap().contains("unsafe_code");
+    let mut found: Vec<String> = rust_files(&crates)
+        .iter()
+        .filter(|path| lifted(path))
+        .map(|path| path.strip_prefix(&crates).unwrap().display().to_string())
+        .collect();
+    found.sort();
+    assert_eq!(found, UNSAFE, "files that lift the lint");
+    for entry in std::fs::read_dir(&crates).unwrap() {
+        let folder = entry.unwrap().path();
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let strict = manifest.contains("[lints]\nworkspace = true\n");
+        let denies = manifest.contains("[lints.rust]\nunsafe_code = \"deny\"\n");
+        assert!(if folder.ends_with("bvh") { denies } else { strict }, "lints of {}", folder.display());
+    }
+    let workspace = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    assert!(workspace.contains("[workspace.lints.rust]\nunsafe_code = \"forbid\"\n"));
 }
 
 #[test]

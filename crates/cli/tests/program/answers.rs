@@ -183,6 +183,39 @@ fn schedulers_are_compared_in_a_table() {
 }
 
 #[test]
+fn rays_are_measured_on_built_in_meshes_and_on_files() {
+    let folder = Folder::new();
+    let sparing = "--rays 640 --repeats 1 --threads 2";
+    let table = folder.good(&format!("bench rays blob:3 {sparing}")).stdout;
+    let line = |start: &str| table.lines().find(|line| line.starts_with(start)).unwrap_or_default();
+    assert!(table.starts_with("blob:3: 110 triangles\n"), "{table}");
+    for kind in ["primary", "shadow", "ao", "diffuse", "diffuse2", "random"] {
+        assert!(line("Mrays/s").contains(kind), "{table}");
+    }
+    for row in ["fast", "balanced", "best", "single, 1", "batch, 1", "packet, 1", "single, 2", "packet, 2"] {
+        assert!(!line(&format!("watertight {row}")).is_empty(), "{row}: {table}");
+    }
+
+    // The camera of a file sees all of it: two triangles whose box fills the picture's height.
+    fs::write(folder.path("sheet.obj"), "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n").unwrap();
+    let json =
+        folder.good(&format!("bench rays sheet.obj --json --kind primary,random --kernel batch {sparing}")).stdout;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let mesh = &json["meshes"][0];
+    assert_eq!((&json["version"], &mesh["mesh"], &mesh["triangles"]), (&1.into(), &"sheet.obj".into(), &2.into()));
+    assert_eq!(mesh["builds"].as_array().unwrap().len(), 3);
+    let rates = mesh["rates"].as_array().unwrap();
+    let named = rates.iter().map(|rate| (rate["kind"].as_str().unwrap(), rate["threads"].as_u64().unwrap()));
+    assert_eq!(named.collect::<Vec<_>>(), [("primary", 1), ("primary", 2), ("random", 1), ("random", 2)]);
+    let hits = rates[0]["hits"].as_u64().unwrap();
+    assert!((30..320).contains(&hits) && rates[1]["hits"] == hits, "{hits}");
+    assert!(rates[0]["mrays_per_second"].as_f64().unwrap() > 0.0);
+    // Nothing is above the sheet for a second bounce.
+    assert_eq!((&rates[2]["rays"], &rates[2]["mrays_per_cpu_second"]), (&0.into(), &serde_json::Value::Null));
+    assert_eq!(folder.files(), ["sheet.obj"]);
+}
+
+#[test]
 fn a_warning_is_no_reason_to_say_no() {
     let folder = Folder::new();
     fs::write(folder.path("plain.json"), r#"{"version": 1, "objects": [{"shape": "sphere"}]}"#).unwrap();

@@ -44,6 +44,22 @@ fn wrong_command_lines() {
 }
 
 #[test]
+fn rays_that_cannot_be_measured() {
+    let folder = Folder::new();
+    for line in ["blob:0", "blob:3 --kind primery", "blob:3 --kernel packet,none", "blob:3 --quality good"] {
+        folder.bad(&format!("bench rays {line}"), 2);
+    }
+    for line in ["blob:3 --rays 1", "blob:3 --repeats 0", ".", "ball.json"] {
+        assert!(!folder.bad(&format!("bench rays {line}"), 2).trim().is_empty(), "{line}");
+    }
+    let message = folder.bad("bench rays blbo", 2);
+    assert_eq!(message, "error: no file and no built-in mesh is called `blbo`, did you mean `blob`?\n");
+    assert!(folder.bad("bench rays blbo:7", 2).contains("did you mean `blob`?"));
+    assert_eq!(folder.bad("bench rays none.ply", 3), "error: no file is called `none.ply`\n");
+    assert!(folder.bad("bench rays blob:3 --kind primery", 2).contains("'primary'"));
+}
+
+#[test]
 fn names_that_were_probably_meant() {
     let folder = Folder::new();
     let message = folder.bad("render jugler", 2);

@@ -1,0 +1,77 @@
+//! How long builds take, in turns.
+
+use crate::ffi::{Api, Device};
+use crate::options::Options;
+use crate::targets::Targets;
+use juggler_bvh::Quality;
+use juggler_raybench::Mesh;
+use juggler_raybench::clock::{Elapsed, Of, Stopwatch};
+use juggler_raybench::kernel::TREES;
+use juggler_raybench::measure::median;
+
+/// Times of one build, repeat by repeat, and the bytes of the tree.
+#[derive(Default)]
+struct Times {
+    elapsed: Vec<Elapsed>,
+    bytes: usize,
+}
+
+/// Prints a table for each number of threads. Embree's devices are made one after the other, because its number of
+/// threads is one for the whole process.
+pub fn measure(api: &Api, mesh: &Mesh, options: &Options, targets: &mut Targets) -> Result<(), String> {
+    for &threads in &options.build_threads {
+        let device = Device::new(api, threads, mesh)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
+        println!("\n  build, {threads} threads {:>21}{:>10}{:>10}{:>10}", "wall s", "CPU s", "bytes/tri", "speed");
+        for quality in Quality::ALL {
+            compare(&device, mesh, quality, options.repeats, &pool, targets)?;
+        }
+    }
+    Ok(())
+}
+
+fn compare(
+    device: &Device,
+    mesh: &Mesh,
+    quality: Quality,
+    repeats: usize,
+    pool: &rayon::ThreadPool,
+    targets: &mut Targets,
+) -> Result<(), String> {
+    let threads = pool.current_num_threads();
+    let (mut theirs, mut ours) = (Times::default(), TREES.iter().map(|_| Times::default()).collect::<Vec<_>>());
+    for _ in 0..repeats {
+        let (scene, elapsed) = device.build(quality, false)?;
+        (theirs.bytes, _) = (scene.bytes, theirs.elapsed.push(elapsed));
+        for (tree, times) in TREES.iter().zip(&mut ours) {
+            let build = || {
+                let watch = Stopwatch::start(Of::Process);
+                ((tree.build)(mesh, quality), watch.elapsed())
+            };
+            let (bvh, elapsed) = pool.install(build);
+            times.bytes = bvh.map_err(|error| error.to_string())?.bytes();
+            times.elapsed.push(elapsed);
+        }
+    }
+    let per_triangle = |bytes: usize| bytes as f64 / mesh.triangles.len() as f64;
+    print(&format!("Embree {quality:?}"), &theirs, per_triangle(theirs.bytes), None);
+    for (tree, times) in TREES.iter().zip(&ours) {
+        let pairs = theirs.elapsed.iter().zip(&times.elapsed);
+        // With one thread the processor's time is the steadier one; with more the wall's is what counts.
+        let speed = median(pairs.map(|(a, b)| if threads == 1 { a.cpu / b.cpu } else { a.wall / b.wall }));
+        print(&format!("Juggler {} {quality:?}", tree.name), times, per_triangle(times.bytes), Some(speed));
+        targets.add(&format!("build speed, {quality:?}, {threads} threads, {} tree", tree.name), speed);
+        if threads == 1 {
+            let smaller = theirs.bytes as f64 / times.bytes as f64;
+            targets.add(&format!("bytes a triangle, Embree's to ours, {quality:?}, {} tree", tree.name), smaller);
+        }
+    }
+    Ok(())
+}
+
+fn print(label: &str, times: &Times, bytes: f64, speed: Option<f64>) {
+    let wall = median(times.elapsed.iter().map(|time| time.wall));
+    let cpu = median(times.elapsed.iter().map(|time| time.cpu));
+    let speed = speed.map_or_else(String::new, |speed| format!("{speed:.2}x"));
+    println!("  {label:30}{wall:>10.3}{cpu:>10.3}{bytes:>10.1}{speed:>10}");
+}

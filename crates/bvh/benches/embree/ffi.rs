@@ -1,0 +1,276 @@
+//! Embree 4, opened at run time: nothing is linked. All calls to C are in this file.
+#![expect(unsafe_code, reason = "Embree is a C library")]
+
+use crate::layout::{Arguments, INVALID, Ray1, Ray8, RayHit1, RayHit8, Valid8};
+use juggler_bvh::Quality;
+use juggler_math::Ray;
+use juggler_raybench::Mesh;
+use juggler_raybench::clock::{Elapsed, Of, Stopwatch};
+use libloading::Library;
+use std::ffi::{CString, OsStr, c_char, c_int, c_void};
+use std::ptr::null_mut;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+/// `RTCDevice`, `RTCGeometry` or `RTCScene`.
+type Handle = *mut c_void;
+type Monitor = unsafe extern "C" fn(*mut c_void, isize, bool) -> bool;
+
+/// The functions that are needed.
+pub struct Api {
+    new_device: unsafe extern "C" fn(*const c_char) -> Handle,
+    device_property: unsafe extern "C" fn(Handle, c_int) -> isize,
+    device_error: unsafe extern "C" fn(Handle) -> c_int,
+    release_device: unsafe extern "C" fn(Handle),
+    set_monitor: unsafe extern "C" fn(Handle, Monitor, *mut c_void),
+    new_geometry: unsafe extern "C" fn(Handle, c_int) -> Handle,
+    new_buffer: unsafe extern "C" fn(Handle, c_int, u32, c_int, usize, usize) -> *mut c_void,
+    commit_geometry: unsafe extern "C" fn(Handle),
+    release_geometry: unsafe extern "C" fn(Handle),
+    new_scene: unsafe extern "C" fn(Handle) -> Handle,
+    set_flags: unsafe extern "C" fn(Handle, c_int),
+    set_quality: unsafe extern "C" fn(Handle, c_int),
+    attach: unsafe extern "C" fn(Handle, Handle) -> u32,
+    commit_scene: unsafe extern "C" fn(Handle),
+    release_scene: unsafe extern "C" fn(Handle),
+    intersect1: unsafe extern "C" fn(Handle, *mut RayHit1, *const Arguments),
+    occluded1: unsafe extern "C" fn(Handle, *mut Ray1, *const Arguments),
+    intersect8: unsafe extern "C" fn(*const Valid8, Handle, *mut RayHit8, *const Arguments),
+    occluded8: unsafe extern "C" fn(*const Valid8, Handle, *mut Ray8, *const Arguments),
+    /// Held so that the functions stay where they are.
+    _library: Library,
+}
+
+impl Api {
+    /// Opens the library at this path.
+    pub fn open(path: &OsStr) -> Result<Self, String> {
+        // SAFETY: the user names a library and means it to be run; Embree's initialisers ask for nothing.
+        let library = unsafe { Library::new(path) }.map_err(|error| error.to_string())?;
+        // SAFETY: each field has the type that `rtcore_device.h`, `rtcore_geometry.h` and `rtcore_scene.h` of Embree 4
+        // declare for the name beside it. Enums are C ints, `size_t` is `usize`, `ssize_t` is `isize`.
+        unsafe {
+            Ok(Self {
+                new_device: function(&library, "rtcNewDevice")?,
+                device_property: function(&library, "rtcGetDeviceProperty")?,
+                device_error: function(&library, "rtcGetDeviceError")?,
+                release_device: function(&library, "rtcReleaseDevice")?,
+                set_monitor: function(&library, "rtcSetDeviceMemoryMonitorFunction")?,
+                new_geometry: function(&library, "rtcNewGeometry")?,
+                new_buffer: function(&library, "rtcSetNewGeometryBuffer")?,
+                commit_geometry: function(&library, "rtcCommitGeometry")?,
+                release_geometry: function(&library, "rtcReleaseGeometry")?,
+                new_scene: function(&library, "rtcNewScene")?,
+                set_flags: function(&library, "rtcSetSceneFlags")?,
+                set_quality: function(&library, "rtcSetSceneBuildQuality")?,
+                attach: function(&library, "rtcAttachGeometry")?,
+                commit_scene: function(&library, "rtcCommitScene")?,
+                release_scene: function(&library, "rtcReleaseScene")?,
+                intersect1: function(&library, "rtcIntersect1")?,
+                occluded1: function(&library, "rtcOccluded1")?,
+                intersect8: function(&library, "rtcIntersect8")?,
+                occluded8: function(&library, "rtcOccluded8")?,
+                _library: library,
+            })
+        }
+    }
+}
+
+/// The function of this name.
+///
+/// # Safety
+/// `F` is the type of that function.
+unsafe fn function<F: Copy>(library: &Library, name: &str) -> Result<F, String> {
+    // SAFETY: the caller's promise; the pointer is copied out, and `Api` holds the library as long as its functions.
+    unsafe { library.get::<F>(name.as_bytes()) }.map(|symbol| *symbol).map_err(|error| error.to_string())
+}
+
+/// Embree with so many threads to build with, and a mesh in it.
+pub struct Device<'a> {
+    api: &'a Api,
+    device: Handle,
+    geometry: Handle,
+    /// Bytes that Embree holds now. Boxed, because Embree knows its address.
+    bytes: Box<AtomicI64>,
+}
+
+/// Called by Embree whenever it takes (positive) or gives back memory.
+unsafe extern "C" fn count_bytes(counter: *mut c_void, bytes: isize, _after: bool) -> bool {
+    // SAFETY: `counter` is the boxed counter of a `Device`, which outlives Embree's device.
+    unsafe { &*counter.cast::<AtomicI64>() }.fetch_add(bytes as i64, Ordering::Relaxed);
+    true
+}
+
+impl<'a> Device<'a> {
+    /// Copies the mesh.
+    pub fn new(api: &'a Api, threads: usize, mesh: &Mesh) -> Result<Self, String> {
+        let settings = CString::new(format!("threads={threads}")).map_err(|error| error.to_string())?;
+        let bytes = Box::new(AtomicI64::new(0));
+        // SAFETY: the string ends with a zero and lives through the call; the counter lives as long as the device.
+        let (device, geometry) = unsafe {
+            let device = (api.new_device)(settings.as_ptr());
+            if device.is_null() {
+                return Err(format!("Embree made no device: error {}", (api.device_error)(null_mut())));
+            }
+            (api.set_monitor)(device, count_bytes, std::ptr::from_ref::<AtomicI64>(&bytes).cast_mut().cast());
+            (device, (api.new_geometry)(device, TRIANGLES))
+        };
+        let own = Self { api, device, geometry, bytes };
+        own.fill(mesh)?;
+        Ok(own)
+    }
+
+    fn fill(&self, mesh: &Mesh) -> Result<(), String> {
+        self.buffer(VERTICES, FLOAT3, mesh.positions.iter().map(|position| position.to_array()))?;
+        self.buffer(INDICES, UINT3, mesh.triangles.iter().copied())?;
+        // SAFETY: the geometry is this device's, and its buffers are filled.
+        unsafe { (self.api.commit_geometry)(self.geometry) };
+        self.checked(())
+    }
+
+    /// A new buffer with triples of 32 bits in it.
+    fn buffer<T: Copy>(
+        &self,
+        kind: c_int,
+        format: c_int,
+        items: impl ExactSizeIterator<Item = [T; 3]>,
+    ) -> Result<(), String> {
+        let count = items.len();
+        // SAFETY: the geometry is this device's; the buffer has `count` items of 12 bytes.
+        let start = unsafe { (self.api.new_buffer)(self.geometry, kind, 0, format, 12, count) }.cast::<[T; 3]>();
+        if start.is_null() {
+            return Err("Embree has no memory for the mesh".into());
+        }
+        for (i, item) in items.enumerate().take(count) {
+            // SAFETY: `i < count`, and Embree aligns buffers to at least four bytes.
+            unsafe { start.add(i).write(item) };
+        }
+        Ok(())
+    }
+
+    /// `4.4.0`.
+    pub fn version(&self) -> String {
+        // SAFETY: the device lives; 1 to 3 are the parts of the version.
+        let part = |part| unsafe { (self.api.device_property)(self.device, part) };
+        format!("{}.{}.{}", part(1), part(2), part(3))
+    }
+
+    /// Builds a tree; how long that took.
+    pub fn build(&self, quality: Quality, robust: bool) -> Result<(Scene<'_>, Elapsed), String> {
+        let before = self.bytes.load(Ordering::Relaxed);
+        // SAFETY: device and geometry live; the numbers are members of `RTCSceneFlags` and `RTCBuildQuality`.
+        let scene = unsafe {
+            let scene = (self.api.new_scene)(self.device);
+            (self.api.set_flags)(scene, if robust { 1 << 2 } else { 0 });
+            (self.api.set_quality)(scene, quality_of(quality));
+            (self.api.attach)(scene, self.geometry);
+            scene
+        };
+        let watch = Stopwatch::start(Of::Process);
+        // SAFETY: as above.
+        unsafe { (self.api.commit_scene)(scene) };
+        let elapsed = watch.elapsed();
+        let bytes = usize::try_from(self.bytes.load(Ordering::Relaxed) - before).unwrap_or(0);
+        self.checked((Scene { device: self, scene, bytes }, elapsed))
+    }
+
+    fn checked<T>(&self, value: T) -> Result<T, String> {
+        // SAFETY: the device lives.
+        match unsafe { (self.api.device_error)(self.device) } {
+            0 => Ok(value),
+            error => Err(format!("Embree's error {error}")),
+        }
+    }
+}
+
+/// `RTC_BUILD_QUALITY_LOW`, `_MEDIUM`, `_HIGH`.
+fn quality_of(quality: Quality) -> c_int {
+    match quality {
+        Quality::Fast => 0,
+        Quality::Balanced => 1,
+        Quality::Best => 2,
+    }
+}
+
+/// `RTC_GEOMETRY_TYPE_TRIANGLE`.
+const TRIANGLES: c_int = 0;
+/// `RTC_BUFFER_TYPE_INDEX` and `RTC_BUFFER_TYPE_VERTEX`.
+const INDICES: c_int = 0;
+const VERTICES: c_int = 1;
+/// `RTC_FORMAT_UINT3` and `RTC_FORMAT_FLOAT3`.
+const UINT3: c_int = 0x5003;
+const FLOAT3: c_int = 0x9003;
+
+impl Drop for Device<'_> {
+    fn drop(&mut self) {
+        // SAFETY: both were made in `new` and are let go once; scenes borrow the device, so none is left.
+        unsafe {
+            (self.api.release_geometry)(self.geometry);
+            (self.api.release_device)(self.device);
+        }
+    }
+}
+
+/// A tree of Embree's.
+pub struct Scene<'d> {
+    device: &'d Device<'d>,
+    scene: Handle,
+    /// Bytes of the tree, without the mesh.
+    pub bytes: usize,
+}
+
+// SAFETY: Embree allows any number of threads to trace a committed scene; nothing else is done through `&Scene`.
+unsafe impl Sync for Scene<'_> {}
+
+/// Where a ray ended: distance and number of the triangle.
+pub type Hit = (f32, u32);
+
+impl Scene<'_> {
+    /// `rtcIntersect1`.
+    #[inline(always)]
+    pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        let mut ray = RayHit1::from(ray);
+        // SAFETY: the scene is committed; the structure is laid out as Embree's.
+        unsafe { (self.device.api.intersect1)(self.scene, &raw mut ray, &ALONE) };
+        (ray.hit.geometry != INVALID).then_some((ray.ray.far, ray.hit.primitive))
+    }
+
+    /// `rtcOccluded1`.
+    #[inline(always)]
+    pub fn any(&self, ray: &Ray) -> bool {
+        let mut ray = Ray1::from(ray);
+        // SAFETY: the scene is committed; the structure is laid out as Embree's.
+        unsafe { (self.device.api.occluded1)(self.scene, &raw mut ray, &ALONE) };
+        ray.far < 0.0
+    }
+
+    /// `rtcIntersect8`, up to eight rays.
+    #[inline(always)]
+    pub fn closest8(&self, rays: &[Ray], coherent: bool) -> [Option<Hit>; 8] {
+        let (packet, valid) = Ray8::of(rays);
+        let mut packet = RayHit8::from(packet);
+        let arguments = if coherent { &TOGETHER } else { &ALONE };
+        // SAFETY: the scene is committed; the structures are laid out and aligned as Embree's.
+        unsafe { (self.device.api.intersect8)(&raw const valid, self.scene, &raw mut packet, arguments) };
+        let hit = |lane: usize| (packet.ray.far[lane], packet.hit.primitive[lane]);
+        std::array::from_fn(|lane| (packet.hit.geometry[lane] != INVALID).then_some(hit(lane)))
+    }
+
+    /// `rtcOccluded8`, up to eight rays.
+    #[inline(always)]
+    pub fn any8(&self, rays: &[Ray], coherent: bool) -> [bool; 8] {
+        let (mut packet, valid) = Ray8::of(rays);
+        let arguments = if coherent { &TOGETHER } else { &ALONE };
+        // SAFETY: the scene is committed; the structures are laid out and aligned as Embree's.
+        unsafe { (self.device.api.occluded8)(&raw const valid, self.scene, &raw mut packet, arguments) };
+        packet.far.map(|far| far < 0.0)
+    }
+}
+
+const ALONE: Arguments = Arguments::new(false);
+const TOGETHER: Arguments = Arguments::new(true);
+
+impl Drop for Scene<'_> {
+    fn drop(&mut self) {
+        // SAFETY: made in `build`, let go once.
+        unsafe { (self.device.api.release_scene)(self.scene) };
+    }
+}

@@ -1,0 +1,206 @@
+//! `juggler bench rays`: how fast rays find their triangles, with nothing around it. For comparing machines, and
+//! versions of Juggler.
+
+mod report;
+
+use crate::console;
+use crate::failure::Failure;
+use crate::source;
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use juggler::math::Aabb;
+use juggler::scene::import::{self, Fault, ImportError, Limits};
+use juggler_bvh::{Quality, TriangleBvh};
+use juggler_raybench::clock::{Of, Stopwatch};
+use juggler_raybench::kernel::{Kernel, Scratch, TREES, Tree};
+use juggler_raybench::measure::{self, Trace, median};
+use juggler_raybench::meshes::{BUILT_IN, Recipe, RecipeError};
+use juggler_raybench::rays::{self, RaySet};
+use juggler_raybench::{Kind, Mesh, View};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use report::{Build, Rate, Report};
+use std::path::Path;
+
+/// What is measured when nobody says otherwise: small meshes of three sorts, done in half a minute anywhere.
+const MESHES: [&str; 3] = ["blob", "classroom", "hall"];
+/// A build that takes no longer is repeated.
+const QUICK_BUILDS: f64 = 0.3;
+
+/// Flags of `juggler bench rays`.
+#[derive(Debug, Args)]
+#[command(after_help = built_in_meshes())]
+pub struct Rays {
+    /// OBJ, PLY or STL files, or built-in meshes [default: blob, classroom and hall]
+    #[arg(value_name = "MESH")]
+    meshes: Vec<String>,
+    /// Kinds of rays: from the camera, to the light, short and long ones off what they hit [default: all]
+    #[arg(long = "kind", value_name = "KIND", value_delimiter = ',', value_parser = one_of(Kind::ALL, Kind::name))]
+    kinds: Vec<Kind>,
+    /// Ways to ask: one ray a call, many unrelated rays, eight neighbours together [default: all]
+    #[arg(long = "kernel", value_name = "KERNEL", value_delimiter = ',', value_parser = one_of(Kernel::ALL, Kernel::name))]
+    kernels: Vec<Kernel>,
+    /// Which tree is traced; all are built
+    #[arg(long, value_name = "QUALITY", default_value = "balanced", value_parser = one_of(Quality::ALL, report::quality))]
+    quality: Quality,
+    /// How many rays the camera sends
+    #[arg(long, value_name = "N", default_value_t = 50_000, value_parser = clap::value_parser!(u32).range(64..=2_073_600))]
+    rays: u32,
+    /// How often each is measured; the median counts
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeats: u32,
+    /// Threads to compare with one [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// As one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Reads one of a few names.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let value = move |text: String| all.into_iter().find(|value| name(*value) == text).ok_or("no such name");
+    PossibleValuesParser::new(all.map(name)).try_map(value)
+}
+
+fn built_in_meshes() -> String {
+    let line = |kind: &juggler_raybench::meshes::BuiltIn| format!("  {:10} {} [{}]", kind.name, kind.about, kind.size);
+    let lines: Vec<String> = BUILT_IN.iter().map(line).collect();
+    format!("Built-in meshes, NAME or NAME:SIZE, made by rule and the same everywhere:\n{}", lines.join("\n"))
+}
+
+impl Rays {
+    /// Measures mesh by mesh and prints.
+    pub fn run(self) -> Result<(), Failure> {
+        let names: Vec<&str> = self.meshes.iter().map(String::as_str).collect();
+        let names = if names.is_empty() { MESHES.to_vec() } else { names };
+        // Wrong names are found before anything is measured.
+        let subjects: Vec<Subject> = names.into_iter().map(Subject::named).collect::<Result<_, _>>()?;
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = self.threads.map_or(cores, usize::from);
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?;
+        let mut reports = Vec::new();
+        for subject in &subjects {
+            let report = self.measure(subject, &pool)?;
+            if !self.json {
+                let gap = if reports.is_empty() { "" } else { "\n" };
+                console::print(&format!("{gap}{}", report.to_words()))?;
+            }
+            reports.push(report);
+        }
+        if self.json { console::print(&report::to_json(&reports)) } else { Ok(()) }
+    }
+
+    fn measure(&self, subject: &Subject, pool: &ThreadPool) -> Result<Report, Failure> {
+        let mesh = subject.mesh()?;
+        let mut report = Report::new(subject.name(), mesh.triangles.len(), pool.current_num_threads());
+        let mut bvhs = Vec::new();
+        for tree in TREES {
+            for quality in Quality::ALL {
+                let (bvh, build) = pool.install(|| self.build(&mesh, tree, quality))?;
+                report.builds.push(build);
+                if quality == self.quality {
+                    bvhs.push((tree, bvh));
+                }
+            }
+        }
+        let Some((_, first)) = bvhs.first() else { return Ok(report) };
+        for set in rays::make(&mesh, first, self.rays as usize) {
+            if self.kinds.is_empty() || self.kinds.contains(&set.kind) {
+                self.trace(&set, &bvhs, &mut report)?;
+            }
+        }
+        Ok(report)
+    }
+
+    /// Builds, more than once when that is quick.
+    fn build(&self, mesh: &Mesh, tree: &Tree, quality: Quality) -> Result<(TriangleBvh, Build), Failure> {
+        let (all, mut seconds) = (Stopwatch::start(Of::Process), Vec::new());
+        loop {
+            let watch = Stopwatch::start(Of::Process);
+            let bvh = (tree.build)(mesh, quality).map_err(|error| Failure::Wrong(error.to_string()))?;
+            seconds.push(watch.elapsed().wall);
+            if seconds.len() >= self.repeats as usize || all.elapsed().wall > QUICK_BUILDS {
+                let build = Build {
+                    test: tree.name,
+                    quality,
+                    seconds: median(seconds),
+                    bytes: bvh.bytes(),
+                    sah_cost: bvh.stats().sah_cost,
+                };
+                return Ok((bvh, build));
+            }
+        }
+    }
+
+    fn trace(&self, set: &RaySet, bvhs: &[(&Tree, TriangleBvh)], report: &mut Report) -> Result<(), Failure> {
+        let query = set.kind.query();
+        let kernels = Kernel::ALL.into_iter().filter(|k| self.kernels.is_empty() || self.kernels.contains(k));
+        let pairs: Vec<_> =
+            kernels.flat_map(|kernel| bvhs.iter().map(move |(tree, bvh)| (*tree, kernel, bvh))).collect();
+        let tracers: Vec<_> = pairs
+            .iter()
+            .map(|(_, kernel, bvh)| move |rays: &[_], scratch: &mut Scratch| kernel.trace(bvh, query, rays, scratch))
+            .collect();
+        let traces: Vec<Trace> = tracers.iter().map(|tracer| tracer as Trace).collect();
+        let mut counts = vec![1, report.threads];
+        counts.dedup();
+        for threads in counts {
+            let timings = measure::in_turns(&set.rays, &traces, threads, self.repeats as usize);
+            for ((tree, kernel, _), timing) in pairs.iter().zip(timings) {
+                report.add(Rate { test: tree.name, kernel: *kernel, kind: set.kind, threads, timing })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is traced, before it is loaded or made.
+enum Subject<'n> {
+    File(&'n str),
+    BuiltIn(&'n str, Recipe),
+}
+
+impl<'n> Subject<'n> {
+    fn named(name: &'n str) -> Result<Self, Failure> {
+        let path = Path::new(name);
+        match Recipe::named(name) {
+            _ if path.is_dir() => Err(Failure::Wrong(format!("`{name}` is a folder, not a mesh file"))),
+            _ if path.exists() => Ok(Self::File(name)),
+            Ok(recipe) => Ok(Self::BuiltIn(name, recipe)),
+            Err(RecipeError::Unknown) => Err(source::unknown(name, "mesh", BUILT_IN.map(|kind| kind.name))),
+            Err(error) => Err(Failure::Wrong(error.to_string())),
+        }
+    }
+
+    fn name(&self) -> &'n str {
+        match self {
+            Self::File(name) | Self::BuiltIn(name, _) => name,
+        }
+    }
+
+    fn mesh(&self) -> Result<Mesh, Failure> {
+        match self {
+            Self::BuiltIn(_, recipe) => Ok(recipe.make()),
+            Self::File(name) => {
+                let imported = import::load(Path::new(name), &Limits::default()).map_err(|error| refused(&error))?;
+                for warning in imported.warnings {
+                    console::say(&format!("warning: `{name}`: {warning}"));
+                }
+                let view = View::around(&Aabb::from_points(imported.mesh.positions.iter().copied()));
+                Ok(Mesh { positions: imported.mesh.positions, triangles: imported.mesh.triangles, view })
+            }
+        }
+    }
+}
+
+fn refused(error: &ImportError) -> Failure {
+    let shown = error.path.display();
+    match &error.fault {
+        Fault::Read(error) => Failure::file("read", shown, error),
+        fault => Failure::Wrong(format!("cannot read `{shown}`: {fault}")),
+    }
+}
