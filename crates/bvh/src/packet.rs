@@ -5,20 +5,60 @@
 //! have missed, for the price of one. The interval's test never misses what one of its rays meets. Where few
 //! rays are left in a box they go on alone.
 
-use crate::lanes::{Bits, Lanes};
+use crate::lanes::{Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::{Bundle, Slabs};
 use crate::single::nearest;
 use crate::stack::{Stack, distance};
 use crate::{Bvh, Leaf};
+use arrayvec::ArrayVec;
 use fearless_simd::dispatch;
 use juggler_math::Ray;
 
 /// Most rays that are traced together.
 pub const PACKET: usize = WIDTH;
+/// Rays whose interval is tested as one: several packets, for the nodes on the way are mostly the same.
+pub(crate) const GROUP: usize = PACKETS * PACKET;
+const PACKETS: usize = 4;
 /// With so few rays left in a box they go on alone.
 const FEW: u32 = 2;
+
+/// Rays of one octant, packet by packet, and their interval.
+pub(crate) struct Group {
+    pub bundle: Bundle,
+    pub lanes: ArrayVec<RayLanes, PACKETS>,
+}
+
+impl Group {
+    /// At most [`GROUP`] rays; `None` where the directions do not share an octant or a ray may start before its
+    /// origin.
+    #[inline(always)]
+    pub fn of_rays<S: Lanes>(simd: S, rays: &[Ray]) -> Option<Self> {
+        let mut packets = rays.chunks(PACKET);
+        let mut lanes = ArrayVec::new();
+        let (packet, mut extent) = RayLanes::of_rays(simd, packets.next()?)?;
+        lanes.push(packet);
+        for rays in packets.take(PACKETS - 1) {
+            let (packet, more) = RayLanes::of_rays(simd, rays)?;
+            lanes.push(packet);
+            extent = extent.union(simd, &more)?;
+        }
+        Some(Self { bundle: extent.bundle(), lanes })
+    }
+
+    /// Which of the rays in `among` meet the box in `slot` of the bounds.
+    #[inline(always)]
+    fn test<S: Lanes>(&self, simd: S, bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize, among: u32) -> u32 {
+        let mut active = 0;
+        for (number, lanes) in self.lanes.iter().enumerate() {
+            if among >> (number * WIDTH) & 0xff != 0 {
+                active |= lanes.test(simd, bounds, slot) << (number * WIDTH);
+            }
+        }
+        active & among
+    }
+}
 
 impl Bvh {
     /// [`Bvh::closest`] for rays that go the same way; a ray's lane is its number in the slice. More than
@@ -35,12 +75,11 @@ impl Bvh {
     #[inline(always)]
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
         let mut stack = Stack::new();
-        for (group, rays) in rays.chunks_mut(PACKET).enumerate() {
-            match RayLanes::of_rays(simd, rays) {
-                Some((mut lanes, bundle)) => {
-                    self.closest_group(simd, &mut stack, group * PACKET, rays, bundle, &mut lanes, leaf);
-                }
-                None => self.closest_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),
+        for (number, rays) in rays.chunks_mut(GROUP).enumerate() {
+            let first = number * GROUP;
+            match Group::of_rays(simd, rays) {
+                Some(mut group) => self.closest_group(simd, &mut stack, first, rays, &mut group, leaf),
+                None => self.closest_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf),
             }
         }
     }
@@ -49,40 +88,37 @@ impl Bvh {
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
         let mut stack = Stack::new();
         occluded.fill(false);
-        for (group, (rays, occluded)) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)).enumerate() {
+        for (number, (rays, occluded)) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)).enumerate() {
             let rays = &rays[..rays.len().min(occluded.len())];
-            let found = match RayLanes::of_rays(simd, rays) {
-                Some((lanes, bundle)) => {
-                    self.any_group(simd, &mut stack, group * PACKET, rays, &bundle, &lanes, leaf)
-                }
-                None => self.any_alone(simd, Child::ROOT, &mut stack, group * PACKET, u32::MAX, rays, leaf),
+            let first = number * GROUP;
+            let found = match Group::of_rays(simd, rays) {
+                Some(group) => self.any_group(simd, &mut stack, first, rays, &group, leaf),
+                None => self.any_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf),
             };
-            for lane in Bits(found) {
-                occluded[lane] = true;
+            for (lane, occluded) in occluded.iter_mut().enumerate() {
+                *occluded = found >> lane & 1 != 0;
             }
         }
     }
 
-    /// Traces the rays of a group as one, each from the leaves on and where few are left alone.
-    #[allow(clippy::too_many_arguments)]
+    /// Traces the rays of a group as one, each from the leaves on.
     #[inline(always)]
     pub(crate) fn closest_group<S: Lanes>(
         &self,
         simd: S,
         stack: &mut Stack,
-        base: usize,
+        first: usize,
         rays: &mut [Ray],
-        mut bundle: Bundle,
-        lanes: &mut RayLanes,
+        group: &mut Group,
         leaf: &mut impl Leaf,
     ) {
         let nodes = &*self.nodes;
-        let mut next = self.nearest_slot(simd, Child::ROOT, &bundle, stack);
+        let mut next = self.nearest_slot(simd, Child::ROOT, &group.bundle, stack);
         loop {
             let place = match next {
                 Some(place) => place as usize,
                 None => match stack.pop() {
-                    Some(top) if distance(top) > bundle.t_max => continue,
+                    Some(top) if distance(top) > group.bundle.t_max => continue,
                     Some(top) => top as u32 as usize,
                     None => return,
                 },
@@ -90,19 +126,20 @@ impl Bvh {
             let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
             let child = parent.children[slot];
             if !child.is_leaf() {
-                next = self.nearest_slot(simd, child, &bundle, stack);
+                next = self.nearest_slot(simd, child, &group.bundle, stack);
                 continue;
             }
             next = None;
-            let active = lanes.test(simd, &parent.bounds, slot);
-            if active == 0 {
-                continue;
+            let mut t_max = f32::NEG_INFINITY;
+            for (number, (lanes, rays)) in group.lanes.iter_mut().zip(rays.chunks_mut(WIDTH)).enumerate() {
+                let active = lanes.test(simd, &parent.bounds, slot);
+                if active != 0 {
+                    leaf.closest_many(first + number * WIDTH, active, rays, child.items());
+                    lanes.shorten(active, rays);
+                }
+                t_max = max(lanes.farthest, t_max);
             }
-            leaf.closest_many(base, active, rays, child.items());
-            for lane in Bits(active) {
-                lanes.shorten(lane, rays[lane].t_max);
-            }
-            bundle.t_max = lanes.t_max();
+            group.bundle.t_max = t_max;
         }
     }
 
@@ -146,47 +183,51 @@ impl Bvh {
     }
 
     /// Which of the rays hit something (bit per lane).
-    #[allow(clippy::too_many_arguments)]
     #[inline(always)]
     pub(crate) fn any_group<S: Lanes>(
         &self,
         simd: S,
         stack: &mut Stack,
-        base: usize,
+        first: usize,
         rays: &[Ray],
-        bundle: &Bundle,
-        lanes: &RayLanes,
+        group: &Group,
         leaf: &mut impl Leaf,
     ) -> u32 {
         let nodes = &*self.nodes;
-        let all = (1u32 << rays.len()) - 1;
+        let all = u32::MAX >> (GROUP - rays.len());
         let mut found = 0;
-        let mut next = self.nearest_slot(simd, Child::ROOT, bundle, stack);
-        loop {
-            let place = match next.or_else(|| stack.pop().map(|top| top as u32)) {
+        let mut next = self.nearest_slot(simd, Child::ROOT, &group.bundle, stack);
+        while found != all {
+            let place = match next {
                 Some(place) => place as usize,
-                None => return found,
+                None => match stack.pop() {
+                    Some(top) => top as u32 as usize,
+                    None => return found,
+                },
             };
             next = None;
             let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
             let child = parent.children[slot];
-            let active = lanes.test(simd, &parent.bounds, slot) & all & !found;
+            let active = group.test(simd, &parent.bounds, slot, all & !found);
             if active == 0 {
                 continue;
             }
             if child.is_leaf() {
-                found |= leaf.any_many(base, active, rays, child.items());
+                for (number, rays) in rays.chunks(WIDTH).enumerate() {
+                    let shift = number * WIDTH;
+                    let active = active >> shift & 0xff;
+                    if active != 0 {
+                        found |= leaf.any_many(first + shift, active, rays, child.items()) << shift;
+                    }
+                }
             } else if active.count_ones() > FEW {
-                next = self.nearest_slot(simd, child, bundle, stack);
-                continue;
+                next = self.nearest_slot(simd, child, &group.bundle, stack);
             } else {
-                found |= self.any_alone(simd, child, stack, base, active, rays, leaf);
-            }
-            if found == all {
-                stack.truncate(0);
-                return found;
+                found |= self.any_alone(simd, child, stack, first, active, rays, leaf);
             }
         }
+        stack.truncate(0);
+        found
     }
 
     /// Which of the active rays, each on its own, hit something in the subtree at `from`.

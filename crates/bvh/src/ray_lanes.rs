@@ -2,7 +2,7 @@
 
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
-use crate::slabs::{Bundle, SLACK, WIDEN, cull_distance};
+use crate::slabs::{Extent, SLACK, WIDEN, cull_distance};
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
@@ -17,15 +17,17 @@ pub(crate) struct RayLanes {
     pub t_min: [f32; WIDTH],
     /// In the sense of [`cull_distance`].
     t_max: [f32; WIDTH],
+    /// The largest of these.
+    pub farthest: f32,
     /// Bit per axis: the directions' signs.
     pub signs: u32,
 }
 
 impl RayLanes {
-    /// At most eight rays, and the interval of them all; lanes without a ray meet nothing. `None` where the
+    /// At most eight rays, and their extremes; lanes without a ray meet nothing. `None` where the
     /// directions do not share an octant or a ray may start before its origin.
     #[inline(always)]
-    pub fn of_rays<S: Lanes>(simd: S, rays: &[Ray]) -> Option<(Self, Bundle)> {
+    pub fn of_rays<S: Lanes>(simd: S, rays: &[Ray]) -> Option<(Self, Extent)> {
         let first = row(simd, rays.first()?);
         let mut rows = [first; WIDTH];
         for (row, ray) in rows.iter_mut().zip(rays) {
@@ -60,24 +62,24 @@ impl RayLanes {
             inverse,
             t_min: t_min.into(),
             t_max: simd.least(t_max * SLACK, simd.splat(f32::MAX)).into(),
+            farthest: cull_distance(high[7]),
             signs,
         };
         for lane in rays.len()..WIDTH {
             (lanes.t_min[lane], lanes.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
         }
-        Some((lanes, Bundle::between(&low, &high, signs)))
+        Some((lanes, Extent { low, high, signs }))
     }
 
-    /// Tells how far the ray of a lane still goes.
+    /// Tells how far the active rays still go.
     #[inline(always)]
-    pub fn shorten(&mut self, lane: usize, t_max: f32) {
-        self.t_max[lane & (WIDTH - 1)] = cull_distance(t_max);
-    }
-
-    /// The farthest that any ray goes, in the sense of [`cull_distance`].
-    #[inline(always)]
-    pub fn t_max(&self) -> f32 {
-        self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a))
+    pub fn shorten(&mut self, active: u32, rays: &[Ray]) {
+        for (lane, ray) in rays.iter().enumerate().take(WIDTH) {
+            if active >> lane & 1 != 0 {
+                self.t_max[lane] = cull_distance(ray.t_max);
+            }
+        }
+        self.farthest = self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a));
     }
 
     /// Which rays meet the box in `slot` of the bounds (bit per lane).

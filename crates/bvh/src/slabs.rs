@@ -147,18 +147,35 @@ impl Slabs {
     }
 }
 
-impl Bundle {
-    /// The interval of rays whose origins, directions, `t_min` and `t_max` lie between `low` and `high`, with the
-    /// signs given for all directions. What it misses, every one of the rays misses.
+/// Extremes of several rays: origin, direction, `t_min`, `t_max`; and the signs that all directions have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    pub low: [f32; WIDTH],
+    pub high: [f32; WIDTH],
+    /// Bit per axis.
+    pub signs: u32,
+}
+
+impl Extent {
+    /// Of both; `None` where the directions do not share an octant.
+    #[inline(always)]
+    pub fn union<S: Lanes>(&self, simd: S, other: &Self) -> Option<Self> {
+        let low = simd.least(simd.load(&self.low), simd.load(&other.low)).into();
+        let high = simd.most(simd.load(&self.high), simd.load(&other.high)).into();
+        (self.signs == other.signs).then_some(Self { low, high, signs: self.signs })
+    }
+
+    /// What this misses, every one of the rays misses.
     ///
     /// Distances below `t_min >= 0` are cut off anyway, so the near planes only need their smallest positive
     /// distance (smallest inverse) and the far planes their largest.
     #[inline(always)]
-    pub fn between(low: &[f32; WIDTH], high: &[f32; WIDTH], signs: u32) -> Self {
-        let side = [signs as usize & 1, (signs >> 1) as usize & 1, (signs >> 2) as usize & 1];
+    pub fn bundle(&self) -> Bundle {
+        let Self { low, high, signs } = self;
+        let side = [*signs as usize & 1, (signs >> 1) as usize & 1, (signs >> 2) as usize & 1];
         let near = [[high, low][side[0]], [high, low][side[1]], [high, low][side[2]]];
         let far = [[low, high][side[0]], [low, high][side[1]], [low, high][side[2]]];
-        Self {
+        Bundle {
             side,
             near_origin: [near[0][0], near[1][1], near[2][2]],
             far_origin: [far[0][0], far[1][1], far[2][2]],

@@ -1,20 +1,28 @@
 //! Eight rays at the leaves: one triangle at a time, or eight triangles for each ray when few rays are left.
 
-use super::meet::{Lines, splat};
+use super::meet::{Lines, settle, splat};
 use super::{Block, LANES, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes, bits};
+use crate::packet::{GROUP, Group, PACKET};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::Bundle;
 use crate::triangle::Shear;
+use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 use std::ops::Range;
 
-/// Visitor for a packet whose rays are longest along the same axis.
+/// Visitor for a group of packets.
 pub(super) struct Many<'a, S: Simd> {
     simd: S,
     blocks: &'a [Block],
+    packets: ArrayVec<Packet, { GROUP / PACKET }>,
+    hits: &'a mut [Option<TriangleHit>],
+}
+
+/// Rays that are longest along the same axis.
+struct Packet {
     axes: [usize; 3],
     side: [usize; 3],
     origin: [[f32; LANES]; 3],
@@ -23,29 +31,37 @@ pub(super) struct Many<'a, S: Simd> {
     t_min: [f32; LANES],
     t_max: [f32; LANES],
     bundle: Bundle,
-    hits: &'a mut [Option<TriangleHit>],
 }
 
 impl<'a, S: Lanes> Many<'a, S> {
-    /// `None` where the rays have no longest axis in common.
+    /// `None` where the rays of a packet have no longest axis in common.
     #[inline(always)]
     pub fn new(
         simd: S,
         blocks: &'a [Block],
         rays: &[Ray],
-        lanes: &RayLanes,
-        bundle: &Bundle,
+        group: &Group,
         hits: &'a mut [Option<TriangleHit>],
     ) -> Option<Self> {
+        let mut packets = ArrayVec::new();
+        for (rays, lanes) in rays.chunks(PACKET).zip(&group.lanes) {
+            packets.push(Packet::new(simd, rays, lanes, &group.bundle)?);
+        }
+        Some(Self { simd, blocks, packets, hits })
+    }
+}
+
+impl Packet {
+    #[inline(always)]
+    fn new<S: Lanes>(simd: S, rays: &[Ray], lanes: &RayLanes, bundle: &Bundle) -> Option<Self> {
         let size = |axis: usize| simd.load(&lanes.direction[axis]).abs();
         let (x, y, z) = (size(0), size(1), size(2));
-        let present = (1u32 << rays.len()) - 1;
-        let first = bits(x.simd_ge(y) & x.simd_ge(z)) & present;
-        let second = bits(y.simd_ge(z)) & present & !first;
-        let axes = match present {
-            all if first == all => [1, 2, 0],
-            all if second == all => [2, 0, 1],
-            _ if first | second == 0 => [0, 1, 2],
+        let first = bits(x.simd_ge(y) & x.simd_ge(z));
+        let second = bits(y.simd_ge(z)) & !first;
+        let axes = match (first, second) {
+            (0xff, 0) => [1, 2, 0],
+            (0, 0xff) => [2, 0, 1],
+            (0, 0) => [0, 1, 2],
             _ => return None,
         };
         let [x, y, z] = axes;
@@ -56,8 +72,6 @@ impl<'a, S: Lanes> Many<'a, S> {
         }
         let side = |axis: usize| (lanes.signs >> axis) as usize & 1;
         Some(Self {
-            simd,
-            blocks,
             axes,
             side: [side(x), side(y), side(z)],
             origin: [lanes.origin[x], lanes.origin[y], lanes.origin[z]],
@@ -70,21 +84,19 @@ impl<'a, S: Lanes> Many<'a, S> {
             t_min: lanes.t_min,
             t_max,
             bundle: *bundle,
-            hits,
         })
     }
 
     /// All rays.
     #[inline(always)]
-    fn lines(&self) -> Lines<S> {
-        let load = |numbers: &[[f32; LANES]; 3]| {
-            [self.simd.load(&numbers[0]), self.simd.load(&numbers[1]), self.simd.load(&numbers[2])]
-        };
+    fn lines<S: Lanes>(&self, simd: S) -> Lines<S> {
+        let [x, y, z] = &self.origin;
+        let [f, g, h] = &self.factors;
         Lines {
-            origin: load(&self.origin),
-            factors: load(&self.factors),
-            t_min: self.simd.load(&self.t_min),
-            t_max: self.simd.load(&self.t_max),
+            origin: [simd.load(x), simd.load(y), simd.load(z)],
+            factors: [simd.load(f), simd.load(g), simd.load(h)],
+            t_min: simd.load(&self.t_min),
+            t_max: simd.load(&self.t_max),
         }
     }
 
@@ -102,36 +114,62 @@ impl<'a, S: Lanes> Many<'a, S> {
         }
     }
 
+    /// Active rays that hit the triangle in a lane of the block, and where.
+    #[inline(always)]
+    fn rays_at<S: Lanes>(&self, simd: S, block: &Block, number: usize, active: u32) -> (u32, [[f32; LANES]; 3]) {
+        let corners = block.permuted(number, self.axes);
+        let [a, b, c] = corners;
+        let lines = self.lines(simd);
+        let splats = [splat(simd, a), splat(simd, b), splat(simd, c)];
+        let (candidates, points) = lines.candidates(simd, &splats, active);
+        if candidates == 0 {
+            return (0, [[0.0; LANES]; 3]);
+        }
+        let [t, u, v] = settle(points);
+        let found = simd.load(&t);
+        let mut clamped = found;
+        for axis in 0..3 {
+            let near = simd.splat(Shear::near(&corners, axis, self.side[axis]));
+            let enter = (near - lines.origin[axis]) * simd.load(&self.inverse[axis]);
+            clamped = simd.most(enter, clamped);
+        }
+        let in_range = found.simd_le(lines.t_max) & lines.t_min.simd_le(clamped) & clamped.simd_le(lines.t_max);
+        (candidates & bits(in_range), [clamped.into(), u, v])
+    }
+
+    /// Triangles of a block that the packet may meet.
+    #[inline(always)]
+    fn candidates<S: Lanes>(&self, simd: S, block: &Block, count: usize) -> u32 {
+        block.test_bundle(simd, &self.bundle) & ((1 << count) - 1)
+    }
+}
+
+impl<S: Lanes> Many<'_, S> {
     #[inline(always)]
     fn keep(&mut self, lane: usize, hit: TriangleHit, ray: &mut Ray) {
         if hit.is_before(&self.hits[lane]) {
             self.hits[lane] = Some(hit);
             ray.t_max = hit.t;
-            self.t_max[lane & (LANES - 1)] = hit.t;
+            self.packets[lane / LANES].t_max[lane % LANES] = hit.t;
         }
     }
 
-    /// Active rays that may hit the triangle in a lane of the block.
+    /// One ray, and the triangles of a block that it may hit.
     #[inline(always)]
-    fn rays_at(&self, block: &Block, number: usize, active: u32) -> u32 {
-        let [a, b, c] = block.permuted(number, self.axes);
-        self.lines().candidates(self.simd, [splat(self.simd, a), splat(self.simd, b), splat(self.simd, c)], active)
-    }
-
-    /// Triangles of a block that the packet may meet.
-    #[inline(always)]
-    fn candidates(&self, block: &Block, count: usize) -> u32 {
-        block.test_bundle(self.simd, &self.bundle) & ((1 << count) - 1)
+    fn alone(&self, lane: usize, ray: &Ray, block: &Block, count: usize) -> (Shear, u32) {
+        let shear = self.packets[lane / LANES].shear(lane % LANES);
+        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
+        let corners = block.corners(self.simd, shear.axes);
+        (shear, lines.candidates(self.simd, &corners, (1 << count) - 1).0)
     }
 }
 
 impl<S: Lanes> Leaf for Many<'_, S> {
     #[inline(always)]
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
-        let (blocks, shear) = (self.blocks, self.shear(lane));
+        let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes), (1 << items.len()) - 1);
+        let (shear, candidates) = self.alone(lane, ray, block, items.len());
         for number in Bits(candidates) {
             if let Some(hit) = block.hit(&shear, ray.t_min, ray.t_max, number) {
                 self.keep(lane, hit, ray);
@@ -141,9 +179,8 @@ impl<S: Lanes> Leaf for Many<'_, S> {
 
     #[inline(always)]
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
-        let (block, shear) = (&self.blocks[items.start as usize], self.shear(lane));
-        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let candidates = lines.candidates(self.simd, block.corners(self.simd, self.axes), (1 << items.len()) - 1);
+        let block = &self.blocks[items.start as usize];
+        let (shear, candidates) = self.alone(lane, ray, block, items.len());
         for number in Bits(candidates) {
             if block.hit(&shear, ray.t_min, ray.t_max, number).is_some() {
                 return true;
@@ -153,27 +190,27 @@ impl<S: Lanes> Leaf for Many<'_, S> {
     }
 
     #[inline(always)]
-    fn closest_many(&mut self, _first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
+    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        for number in Bits(self.candidates(block, items.len())) {
-            for lane in Bits(self.rays_at(block, number, active)) {
-                if let Some(hit) = block.hit(&self.shear(lane), rays[lane].t_min, rays[lane].t_max, number) {
-                    self.keep(lane, hit, &mut rays[lane]);
-                }
+        let packet = &self.packets[first / LANES];
+        for number in Bits(packet.candidates(self.simd, block, items.len())) {
+            let packet = &self.packets[first / LANES];
+            let (mask, [t, u, v]) = packet.rays_at(self.simd, block, number, active);
+            for lane in Bits(mask) {
+                let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number] };
+                self.keep(first + lane, hit, &mut rays[lane]);
             }
         }
     }
 
     #[inline(always)]
-    fn any_many(&mut self, _first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {
+    fn any_many(&mut self, first: usize, active: u32, _rays: &[Ray], items: Range<u32>) -> u32 {
         let block = &self.blocks[items.start as usize];
+        let packet = &self.packets[first / LANES];
         let mut found = 0;
-        for number in Bits(self.candidates(block, items.len())) {
-            for lane in Bits(self.rays_at(block, number, active & !found)) {
-                let hit = block.hit(&self.shear(lane), rays[lane].t_min, rays[lane].t_max, number);
-                found |= u32::from(hit.is_some()) << lane;
-            }
+        for number in Bits(packet.candidates(self.simd, block, items.len())) {
+            found |= packet.rays_at(self.simd, block, number, active & !found).0;
         }
         found
     }

@@ -44,21 +44,49 @@ impl<S: Lanes> Lines<S> {
         [x - self.factors[0] * z, y - self.factors[1] * z, z]
     }
 
-    /// Lanes in `among` that may hit (bit per lane): whose line passes no two edges on different sides, and passes within
-    /// its range between the least and the largest depth of the corners.
+    /// The corners in the frames of the lines, and the lanes in `among` that may hit (bit per lane): whose line
+    /// passes no two edges on different sides, and passes within its range between the least and the largest
+    /// depth of the corners.
     #[inline(always)]
-    pub fn candidates(&self, simd: S, corners: [Corner<S>; 3], among: u32) -> u32 {
-        let (a, b, c) = (self.project(&corners[0]), self.project(&corners[1]), self.project(&corners[2]));
+    pub fn candidates(&self, simd: S, corners: &[Corner<S>; 3], among: u32) -> (u32, [Corner<S>; 3]) {
+        let (mut a, mut b, mut c) = (self.project(&corners[0]), self.project(&corners[1]), self.project(&corners[2]));
         let [u, v, w] = edges([[a[0], a[1]], [b[0], b[1]], [c[0], c[1]]]);
         let zero = simd.splat(0.0);
         let outside = simd.least(u, simd.least(v, w)).simd_lt(zero) & simd.most(u, simd.most(v, w)).simd_gt(zero);
         let inside = among & !bits(outside);
         if inside == 0 {
-            return 0;
+            return (0, [a, b, c]);
         }
-        let (a, b, c) = (a[2] * self.factors[2], b[2] * self.factors[2], c[2] * self.factors[2]);
-        let start = simd.least(a, simd.least(b, c)).simd_le(self.t_max);
-        let end = simd.most(a, simd.most(b, c)).simd_ge(self.t_min);
-        inside & bits(start & end)
+        (a[2], b[2], c[2]) = (a[2] * self.factors[2], b[2] * self.factors[2], c[2] * self.factors[2]);
+        let start = simd.least(a[2], simd.least(b[2], c[2])).simd_le(self.t_max);
+        let end = simd.most(a[2], simd.most(b[2], c[2])).simd_ge(self.t_min);
+        (inside & bits(start & end), [a, b, c])
     }
+}
+
+/// The second half for all eight lanes: distances, and weights of the second and third corner; a distance that is
+/// no number where the line passes outside. As [`weigh`](crate::triangle::weigh) does it.
+#[inline(always)]
+pub(super) fn settle<S: Lanes>([a, b, c]: [Corner<S>; 3]) -> [[f32; 8]; 3] {
+    let [ax, ay, az]: [[f32; 8]; 3] = [a[0].into(), a[1].into(), a[2].into()];
+    let [bx, by, bz]: [[f32; 8]; 3] = [b[0].into(), b[1].into(), b[2].into()];
+    let [cx, cy, cz]: [[f32; 8]; 3] = [c[0].into(), c[1].into(), c[2].into()];
+    let (mut t, mut u, mut v) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+    for lane in 0..8 {
+        let double = |number: f32| f64::from(number);
+        let [ax, ay, az] = [double(ax[lane]), double(ay[lane]), double(az[lane])];
+        let [bx, by, bz] = [double(bx[lane]), double(by[lane]), double(bz[lane])];
+        let [cx, cy, cz] = [double(cx[lane]), double(cy[lane]), double(cz[lane])];
+        let [e, f, g] = edges([[ax, ay], [bx, by], [cx, cy]]);
+        let determinant = e + f + g;
+        let misses = (e < 0.0) | (f < 0.0) | (g < 0.0);
+        let outside = misses & ((e > 0.0) | (f > 0.0) | (g > 0.0));
+        let flat = (determinant == 0.0) | !(determinant.abs() < f64::INFINITY);
+        let inverse = 1.0 / determinant;
+        let (e, f, g) = (e * inverse, f * inverse, g * inverse);
+        let distance = (e * az + f * bz + g * cz) as f32;
+        t[lane] = if outside | flat { f32::NAN } else { distance };
+        (u[lane], v[lane]) = (f as f32, g as f32);
+    }
+    [t, u, v]
 }

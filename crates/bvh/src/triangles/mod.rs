@@ -9,8 +9,7 @@ mod one;
 use crate::lanes::{Lanes, bits};
 use crate::node::Child;
 use crate::pages::Pages;
-use crate::packet::PACKET;
-use crate::ray_lanes::RayLanes;
+use crate::packet::{GROUP, Group};
 use crate::slabs::{Bundle, Slabs};
 use crate::stack::Stack;
 use crate::triangle::Shear;
@@ -139,12 +138,12 @@ impl TriangleBvh {
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
         let stack = &mut Stack::new();
         hits.fill(None);
-        for (rays, hits) in rays.chunks_mut(PACKET).zip(hits.chunks_mut(PACKET)) {
-            if let Some((mut lanes, bundle)) = RayLanes::of_rays(simd, rays) {
-                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &bundle, hits) {
-                    self.bvh.closest_group(simd, stack, 0, rays, bundle, &mut lanes, &mut many);
-                    continue;
-                }
+        for (rays, hits) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)) {
+            if let Some(mut group) = Group::of_rays(simd, rays)
+                && let Some(mut many) = Many::new(simd, &self.blocks, rays, &group, hits)
+            {
+                self.bvh.closest_group(simd, stack, 0, rays, &mut group, &mut many);
+                continue;
             }
             for (ray, hit) in rays.iter_mut().zip(hits) {
                 *hit = self.closest(ray);
@@ -156,15 +155,15 @@ impl TriangleBvh {
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
         let stack = &mut Stack::new();
-        for (rays, occluded) in rays.chunks(PACKET).zip(occluded.chunks_mut(PACKET)) {
-            if let Some((lanes, bundle)) = RayLanes::of_rays(simd, rays) {
-                if let Some(mut many) = Many::new(simd, &self.blocks, rays, &lanes, &bundle, &mut []) {
-                    let found = self.bvh.any_group(simd, stack, 0, rays, &bundle, &lanes, &mut many);
-                    for (lane, occluded) in occluded.iter_mut().enumerate() {
-                        *occluded = found >> lane & 1 != 0;
-                    }
-                    continue;
+        for (rays, occluded) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)) {
+            if let Some(group) = Group::of_rays(simd, rays)
+                && let Some(mut many) = Many::new(simd, &self.blocks, rays, &group, &mut [])
+            {
+                let found = self.bvh.any_group(simd, stack, 0, rays, &group, &mut many);
+                for (lane, occluded) in occluded.iter_mut().enumerate() {
+                    *occluded = found >> lane & 1 != 0;
                 }
+                continue;
             }
             for (ray, occluded) in rays.iter().zip(occluded) {
                 *occluded = self.any(ray);

@@ -30,7 +30,7 @@ impl<S: Lanes> One<'_, S> {
     #[inline(always)]
     fn candidates(&self, ray: &Ray, block: &Block, count: usize) -> u32 {
         let lines = Lines::of_one(self.simd, &self.shear, ray.t_min, ray.t_max);
-        lines.candidates(self.simd, block.corners(self.simd, self.shear.axes), (1 << count) - 1)
+        lines.candidates(self.simd, &block.corners(self.simd, self.shear.axes), (1 << count) - 1).0
     }
 }
 
