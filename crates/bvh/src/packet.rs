@@ -8,11 +8,10 @@
 use crate::lanes::{Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
-use crate::slabs::{Bundle, Slabs};
+use crate::slabs::{Bundle, Extent, Slabs};
 use crate::single::nearest;
 use crate::stack::{Stack, distance};
 use crate::{Bvh, Leaf};
-use arrayvec::ArrayVec;
 use fearless_simd::dispatch;
 use juggler_math::Ray;
 
@@ -24,34 +23,48 @@ const PACKETS: usize = 4;
 /// With so few rays left in a box they go on alone.
 const FEW: u32 = 2;
 
-/// Rays of one octant, packet by packet, and their interval.
+/// Rays of one octant, packet by packet, and their interval. Used again for the next rays: nothing is copied.
 pub(crate) struct Group {
     pub bundle: Bundle,
-    pub lanes: ArrayVec<RayLanes, PACKETS>,
+    packets: [RayLanes; PACKETS],
+    count: usize,
 }
 
 impl Group {
-    /// At most [`GROUP`] rays; `None` where the directions do not share an octant or a ray may start before its
-    /// origin.
+    pub fn new() -> Self {
+        Self { bundle: Bundle::default(), packets: [RayLanes::default(); PACKETS], count: 0 }
+    }
+
+    /// Takes at most [`GROUP`] rays in; `false` where their directions do not share an octant or a ray may start
+    /// before its origin.
     #[inline(always)]
-    pub fn of_rays<S: Lanes>(simd: S, rays: &[Ray]) -> Option<Self> {
-        let mut packets = rays.chunks(PACKET);
-        let mut lanes = ArrayVec::new();
-        let (packet, mut extent) = RayLanes::of_rays(simd, packets.next()?)?;
-        lanes.push(packet);
-        for rays in packets.take(PACKETS - 1) {
-            let (packet, more) = RayLanes::of_rays(simd, rays)?;
-            lanes.push(packet);
-            extent = extent.union(simd, &more)?;
+    pub fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray]) -> bool {
+        let mut all: Option<Extent> = None;
+        self.count = rays.len().div_ceil(PACKET).min(PACKETS);
+        for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(PACKET)) {
+            let Some(extent) = packet.fill(simd, rays) else { return false };
+            match all.map_or(Some(extent), |all| all.union(simd, &extent)) {
+                Some(extent) => all = Some(extent),
+                None => return false,
+            }
         }
-        Some(Self { bundle: extent.bundle(), lanes })
+        if let Some(all) = all {
+            self.bundle = all.bundle();
+        }
+        all.is_some()
+    }
+
+    /// The packets that hold rays.
+    #[inline(always)]
+    pub fn packets(&self) -> &[RayLanes] {
+        &self.packets[..self.count]
     }
 
     /// Which of the rays in `among` meet the box in `slot` of the bounds.
     #[inline(always)]
     fn test<S: Lanes>(&self, simd: S, bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize, among: u32) -> u32 {
         let mut active = 0;
-        for (number, lanes) in self.lanes.iter().enumerate() {
+        for (number, lanes) in self.packets().iter().enumerate() {
             if among >> (number * WIDTH) & 0xff != 0 {
                 active |= lanes.test(simd, bounds, slot) << (number * WIDTH);
             }
@@ -74,26 +87,28 @@ impl Bvh {
 
     #[inline(always)]
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
-        let mut stack = Stack::new();
+        let (mut stack, mut group) = (Stack::new(), Group::new());
         for (number, rays) in rays.chunks_mut(GROUP).enumerate() {
             let first = number * GROUP;
-            match Group::of_rays(simd, rays) {
-                Some(mut group) => self.closest_group(simd, &mut stack, first, rays, &mut group, leaf),
-                None => self.closest_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf),
+            if group.fill(simd, rays) {
+                self.closest_group(simd, &mut stack, first, rays, &mut group, leaf);
+            } else {
+                self.closest_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf);
             }
         }
     }
 
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
-        let mut stack = Stack::new();
+        let (mut stack, mut group) = (Stack::new(), Group::new());
         occluded.fill(false);
         for (number, (rays, occluded)) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)).enumerate() {
             let rays = &rays[..rays.len().min(occluded.len())];
             let first = number * GROUP;
-            let found = match Group::of_rays(simd, rays) {
-                Some(group) => self.any_group(simd, &mut stack, first, rays, &group, leaf),
-                None => self.any_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf),
+            let found = if group.fill(simd, rays) {
+                self.any_group(simd, &mut stack, first, rays, &group, leaf)
+            } else {
+                self.any_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf)
             };
             for (lane, occluded) in occluded.iter_mut().enumerate() {
                 *occluded = found >> lane & 1 != 0;
@@ -131,7 +146,7 @@ impl Bvh {
             }
             next = None;
             let mut t_max = f32::NEG_INFINITY;
-            for (number, (lanes, rays)) in group.lanes.iter_mut().zip(rays.chunks_mut(WIDTH)).enumerate() {
+            for (number, (lanes, rays)) in group.packets.iter_mut().zip(rays.chunks_mut(WIDTH)).enumerate() {
                 let active = lanes.test(simd, &parent.bounds, slot);
                 if active != 0 {
                     leaf.closest_many(first + number * WIDTH, active, rays, child.items());

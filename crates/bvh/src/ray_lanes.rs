@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
 /// Up to eight rays of one octant, coordinate by coordinate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RayLanes {
     pub origin: [[f32; WIDTH]; 3],
     pub direction: [[f32; WIDTH]; 3],
@@ -24,10 +24,10 @@ pub(crate) struct RayLanes {
 }
 
 impl RayLanes {
-    /// At most eight rays, and their extremes; lanes without a ray meet nothing. `None` where the
-    /// directions do not share an octant or a ray may start before its origin.
+    /// Takes up to eight rays in, in place, and says what their extremes are; lanes without a ray meet nothing.
+    /// `None` where the directions do not share an octant or a ray may start before its origin.
     #[inline(always)]
-    pub fn of_rays<S: Lanes>(simd: S, rays: &[Ray]) -> Option<(Self, Extent)> {
+    pub fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray]) -> Option<Extent> {
         let first = row(simd, rays.first()?);
         let mut rows = [first; WIDTH];
         for (row, ray) in rows.iter_mut().zip(rays) {
@@ -40,35 +40,30 @@ impl RayLanes {
         }
         let (low, high): ([f32; WIDTH], [f32; WIDTH]) = (low.into(), high.into());
         let [ox, oy, oz, dx, dy, dz, t_min, t_max] = transposed(rows);
-        let mut inverse = [[0.0; WIDTH]; 3];
-        let mut signs = 0;
+        self.signs = 0;
         for axis in 0..3 {
             let direction = [dx, dy, dz][axis];
             let exact = simd.splat(1.0) / direction;
             let overflows = exact.abs().simd_gt(f32::MAX) & !direction.simd_eq(0.0);
-            inverse[axis] = overflows.select(simd.splat(f32::NAN), exact).into();
+            self.origin[axis] = [ox, oy, oz][axis].into();
+            self.direction[axis] = direction.into();
+            self.inverse[axis] = overflows.select(simd.splat(f32::NAN), exact).into();
             match bits(exact.simd_lt(0.0)) {
                 0 => {}
-                0xff => signs |= 1 << axis,
+                0xff => self.signs |= 1 << axis,
                 _ => return None,
             }
         }
         if low[6] < 0.0 {
             return None;
         }
-        let mut lanes = Self {
-            origin: [ox.into(), oy.into(), oz.into()],
-            direction: [dx.into(), dy.into(), dz.into()],
-            inverse,
-            t_min: t_min.into(),
-            t_max: simd.least(t_max * SLACK, simd.splat(f32::MAX)).into(),
-            farthest: cull_distance(high[7]),
-            signs,
-        };
+        self.t_min = t_min.into();
+        self.t_max = simd.least(t_max * SLACK, simd.splat(f32::MAX)).into();
+        self.farthest = cull_distance(high[7]);
         for lane in rays.len()..WIDTH {
-            (lanes.t_min[lane], lanes.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
+            (self.t_min[lane], self.t_max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
         }
-        Some((lanes, Extent { low, high, signs }))
+        Some(Extent { low, high, signs: self.signs })
     }
 
     /// Tells how far the active rays still go.

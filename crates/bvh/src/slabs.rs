@@ -46,7 +46,7 @@ pub(crate) struct Slabs {
 
 /// The interval of several rays, ready for [`Node::test_bundle`](crate::node::Node::test_bundle): a plane at `p` is
 /// met at `(p - origin) * inverse`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bundle {
     /// Per axis 0 where the minimum is the near plane, 1 where the maximum is.
     pub side: [usize; 3],

@@ -8,20 +8,21 @@ use crate::packet::{GROUP, Group, PACKET};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::Bundle;
 use crate::triangle::Shear;
-use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 use std::ops::Range;
 
-/// Visitor for a group of packets.
+/// Visitor for a group of packets, used again for the next group.
 pub(super) struct Many<'a, S: Simd> {
     simd: S,
     blocks: &'a [Block],
-    packets: ArrayVec<Packet, { GROUP / PACKET }>,
-    hits: &'a mut [Option<TriangleHit>],
+    packets: [Packet; GROUP / PACKET],
+    bundle: Bundle,
+    pub hits: [Option<TriangleHit>; GROUP],
 }
 
 /// Rays that are longest along the same axis.
+#[derive(Clone, Copy, Default)]
 struct Packet {
     axes: [usize; 3],
     side: [usize; 3],
@@ -30,61 +31,55 @@ struct Packet {
     inverse: [[f32; LANES]; 3],
     t_min: [f32; LANES],
     t_max: [f32; LANES],
-    bundle: Bundle,
 }
 
 impl<'a, S: Lanes> Many<'a, S> {
-    /// `None` where the rays of a packet have no longest axis in common.
+    pub fn new(simd: S, blocks: &'a [Block]) -> Self {
+        let packets = [Packet::default(); GROUP / PACKET];
+        Self { simd, blocks, packets, bundle: Bundle::default(), hits: [None; GROUP] }
+    }
+
+    /// Forgets what it has found and turns to other rays; `false` where those of a packet have no longest axis in
+    /// common.
     #[inline(always)]
-    pub fn new(
-        simd: S,
-        blocks: &'a [Block],
-        rays: &[Ray],
-        group: &Group,
-        hits: &'a mut [Option<TriangleHit>],
-    ) -> Option<Self> {
-        let mut packets = ArrayVec::new();
-        for (rays, lanes) in rays.chunks(PACKET).zip(&group.lanes) {
-            packets.push(Packet::new(simd, rays, lanes, &group.bundle)?);
+    pub fn fill(&mut self, rays: &[Ray], group: &Group) -> bool {
+        self.bundle = group.bundle;
+        self.hits = [None; GROUP];
+        for ((packet, rays), lanes) in self.packets.iter_mut().zip(rays.chunks(PACKET)).zip(group.packets()) {
+            if !packet.fill(self.simd, rays, lanes) {
+                return false;
+            }
         }
-        Some(Self { simd, blocks, packets, hits })
+        true
     }
 }
 
 impl Packet {
     #[inline(always)]
-    fn new<S: Lanes>(simd: S, rays: &[Ray], lanes: &RayLanes, bundle: &Bundle) -> Option<Self> {
-        let size = |axis: usize| simd.load(&lanes.direction[axis]).abs();
-        let (x, y, z) = (size(0), size(1), size(2));
+    fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray], lanes: &RayLanes) -> bool {
+        let (x, y) = (simd.load(&lanes.direction[0]).abs(), simd.load(&lanes.direction[1]).abs());
+        let z = simd.load(&lanes.direction[2]).abs();
         let first = bits(x.simd_ge(y) & x.simd_ge(z));
         let second = bits(y.simd_ge(z)) & !first;
-        let axes = match (first, second) {
+        self.axes = match (first, second) {
             (0xff, 0) => [1, 2, 0],
             (0, 0xff) => [2, 0, 1],
             (0, 0) => [0, 1, 2],
-            _ => return None,
+            _ => return false,
         };
-        let [x, y, z] = axes;
-        let depth = simd.load(&lanes.inverse[z]);
-        let mut t_max = [f32::NEG_INFINITY; LANES];
-        for (t_max, ray) in t_max.iter_mut().zip(rays) {
+        let depth = simd.load(&lanes.inverse[self.axes[2]]);
+        self.t_min = lanes.t_min;
+        for (t_max, ray) in self.t_max.iter_mut().zip(rays) {
             *t_max = ray.t_max;
         }
-        let side = |axis: usize| (lanes.signs >> axis) as usize & 1;
-        Some(Self {
-            axes,
-            side: [side(x), side(y), side(z)],
-            origin: [lanes.origin[x], lanes.origin[y], lanes.origin[z]],
-            factors: [
-                (simd.load(&lanes.direction[x]) * depth).into(),
-                (simd.load(&lanes.direction[y]) * depth).into(),
-                depth.into(),
-            ],
-            inverse: [lanes.inverse[x], lanes.inverse[y], lanes.inverse[z]],
-            t_min: lanes.t_min,
-            t_max,
-            bundle: *bundle,
-        })
+        for k in 0..3 {
+            let axis = self.axes[k];
+            self.side[k] = (lanes.signs >> axis) as usize & 1;
+            self.origin[k] = lanes.origin[axis];
+            self.inverse[k] = lanes.inverse[axis];
+            self.factors[k] = if k < 2 { (simd.load(&lanes.direction[axis]) * depth).into() } else { depth.into() };
+        }
+        true
     }
 
     /// All rays.
@@ -136,12 +131,6 @@ impl Packet {
         let in_range = found.simd_le(lines.t_max) & lines.t_min.simd_le(clamped) & clamped.simd_le(lines.t_max);
         (candidates & bits(in_range), [clamped.into(), u, v])
     }
-
-    /// Triangles of a block that the packet may meet.
-    #[inline(always)]
-    fn candidates<S: Lanes>(&self, simd: S, block: &Block, count: usize) -> u32 {
-        block.test_bundle(simd, &self.bundle) & ((1 << count) - 1)
-    }
 }
 
 impl<S: Lanes> Many<'_, S> {
@@ -152,6 +141,12 @@ impl<S: Lanes> Many<'_, S> {
             ray.t_max = hit.t;
             self.packets[lane / LANES].t_max[lane % LANES] = hit.t;
         }
+    }
+
+    /// Triangles of a block that the group may meet.
+    #[inline(always)]
+    fn candidates(&self, block: &Block, count: usize) -> u32 {
+        block.test_bundle(self.simd, &self.bundle) & ((1 << count) - 1)
     }
 
     /// One ray, and the triangles of a block that it may hit.
@@ -193,8 +188,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
     fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        let packet = &self.packets[first / LANES];
-        for number in Bits(packet.candidates(self.simd, block, items.len())) {
+        for number in Bits(self.candidates(block, items.len())) {
             let packet = &self.packets[first / LANES];
             let (mask, [t, u, v]) = packet.rays_at(self.simd, block, number, active);
             for lane in Bits(mask) {
@@ -209,7 +203,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &self.blocks[items.start as usize];
         let packet = &self.packets[first / LANES];
         let mut found = 0;
-        for number in Bits(packet.candidates(self.simd, block, items.len())) {
+        for number in Bits(self.candidates(block, items.len())) {
             found |= packet.rays_at(self.simd, block, number, active & !found).0;
         }
         found

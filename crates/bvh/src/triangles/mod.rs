@@ -136,13 +136,11 @@ impl TriangleBvh {
 
     #[inline(always)]
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let stack = &mut Stack::new();
-        hits.fill(None);
+        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, &self.blocks));
         for (rays, hits) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)) {
-            if let Some(mut group) = Group::of_rays(simd, rays)
-                && let Some(mut many) = Many::new(simd, &self.blocks, rays, &group, hits)
-            {
-                self.bvh.closest_group(simd, stack, 0, rays, &mut group, &mut many);
+            if group.fill(simd, rays) && many.fill(rays, &group) {
+                self.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
+                hits.copy_from_slice(&many.hits[..hits.len()]);
                 continue;
             }
             for (ray, hit) in rays.iter_mut().zip(hits) {
@@ -154,12 +152,10 @@ impl TriangleBvh {
 
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
-        let stack = &mut Stack::new();
+        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, &self.blocks));
         for (rays, occluded) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)) {
-            if let Some(group) = Group::of_rays(simd, rays)
-                && let Some(mut many) = Many::new(simd, &self.blocks, rays, &group, &mut [])
-            {
-                let found = self.bvh.any_group(simd, stack, 0, rays, &group, &mut many);
+            if group.fill(simd, rays) && many.fill(rays, &group) {
+                let found = self.bvh.any_group(simd, &mut stack, 0, rays, &group, &mut many);
                 for (lane, occluded) in occluded.iter_mut().enumerate() {
                     *occluded = found >> lane & 1 != 0;
                 }
