@@ -43,6 +43,7 @@ impl Group {
         self.count = rays.len().div_ceil(PACKET).min(PACKETS);
         for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(PACKET)) {
             let Some(extent) = packet.fill(simd, rays) else { return false };
+            packet.bundle = extent.bundle();
             match all.map_or(Some(extent), |all| all.union(simd, &extent)) {
                 Some(extent) => all = Some(extent),
                 None => return false,

@@ -2,7 +2,7 @@
 
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
-use crate::slabs::{Extent, SLACK, WIDEN, cull_distance};
+use crate::slabs::{Bundle, Extent, SLACK, WIDEN, cull_distance};
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
@@ -21,6 +21,8 @@ pub(crate) struct RayLanes {
     pub farthest: f32,
     /// Bit per axis: the directions' signs.
     pub signs: u32,
+    /// Their interval.
+    pub bundle: Bundle,
 }
 
 impl RayLanes {

@@ -17,7 +17,6 @@ pub(super) struct Many<'a, S: Simd> {
     simd: S,
     blocks: &'a [Block],
     packets: [Packet; GROUP / PACKET],
-    bundle: Bundle,
     pub hits: [Option<TriangleHit>; GROUP],
 }
 
@@ -31,19 +30,19 @@ struct Packet {
     inverse: [[f32; LANES]; 3],
     t_min: [f32; LANES],
     t_max: [f32; LANES],
+    bundle: Bundle,
 }
 
 impl<'a, S: Lanes> Many<'a, S> {
     pub fn new(simd: S, blocks: &'a [Block]) -> Self {
         let packets = [Packet::default(); GROUP / PACKET];
-        Self { simd, blocks, packets, bundle: Bundle::default(), hits: [None; GROUP] }
+        Self { simd, blocks, packets, hits: [None; GROUP] }
     }
 
     /// Forgets what it has found and turns to other rays; `false` where those of a packet have no longest axis in
     /// common.
     #[inline(always)]
     pub fn fill(&mut self, rays: &[Ray], group: &Group) -> bool {
-        self.bundle = group.bundle;
         self.hits = [None; GROUP];
         for ((packet, rays), lanes) in self.packets.iter_mut().zip(rays.chunks(PACKET)).zip(group.packets()) {
             if !packet.fill(self.simd, rays, lanes) {
@@ -69,6 +68,7 @@ impl Packet {
         };
         let depth = simd.load(&lanes.inverse[self.axes[2]]);
         self.t_min = lanes.t_min;
+        self.bundle = lanes.bundle;
         for (t_max, ray) in self.t_max.iter_mut().zip(rays) {
             *t_max = ray.t_max;
         }
@@ -143,10 +143,10 @@ impl<S: Lanes> Many<'_, S> {
         }
     }
 
-    /// Triangles of a block that the group may meet.
+    /// Triangles of a block that a packet may meet.
     #[inline(always)]
-    fn candidates(&self, block: &Block, count: usize) -> u32 {
-        block.test_bundle(self.simd, &self.bundle) & ((1 << count) - 1)
+    fn candidates(&self, block: &Block, first: usize, count: usize) -> u32 {
+        block.test_bundle(self.simd, &self.packets[first / LANES].bundle) & ((1 << count) - 1)
     }
 
     /// One ray, and the triangles of a block that it may hit.
@@ -188,7 +188,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
     fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        for number in Bits(self.candidates(block, items.len())) {
+        for number in Bits(self.candidates(block, first, items.len())) {
             let packet = &self.packets[first / LANES];
             let (mask, [t, u, v]) = packet.rays_at(self.simd, block, number, active);
             for lane in Bits(mask) {
@@ -203,7 +203,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &self.blocks[items.start as usize];
         let packet = &self.packets[first / LANES];
         let mut found = 0;
-        for number in Bits(self.candidates(block, items.len())) {
+        for number in Bits(self.candidates(block, first, items.len())) {
             found |= packet.rays_at(self.simd, block, number, active & !found).0;
         }
         found
