@@ -24,6 +24,8 @@ const NODE_COST: f32 = 0.5;
 pub(super) struct Settings {
     pub leaf_size: usize,
     pub block: Blocks,
+    /// Sets up to this size are halved as they lie: they will mostly be one wide node.
+    pub careless: usize,
 }
 
 /// The binary tree, empty when there are no items, and the numbers of the items in leaf order.
@@ -115,8 +117,13 @@ fn halve(items: &mut [Item], around: &Around) -> (usize, [Around; 2]) {
         let order = |a: &Item, b: &Item| center(a).total_cmp(&center(b)).then(a.number().cmp(&b.number()));
         items.select_nth_unstable_by(middle, order);
     }
-    let (left, right) = items.split_at(middle);
-    (middle, [Around::of(left), Around::of(right)])
+    parts(items)
+}
+
+/// The two halves as they lie.
+fn parts(items: &[Item]) -> (usize, [Around; 2]) {
+    let (left, right) = items.split_at(items.len() / 2);
+    (left.len(), [Around::of(left), Around::of(right)])
 }
 
 fn build_alone(set: Set<'_>, settings: &Settings) -> Subtree {
@@ -155,6 +162,9 @@ impl Task<'_> {
         let count = items.len();
         if count <= 1 {
             return None;
+        }
+        if count <= self.settings.careless {
+            return Some(parts(items));
         }
         let found = self.cut(items, around, depth);
         if count <= self.settings.leaf_size {

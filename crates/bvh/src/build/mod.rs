@@ -5,6 +5,7 @@ mod binned;
 mod bins;
 mod collapse;
 mod item;
+mod morton;
 mod partition;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
@@ -25,12 +26,12 @@ pub const MAX_ITEMS: usize = 1 << 28;
 /// How much work goes into a tree. The same boxes and quality always give the same tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// Eight bins along the longest axis: for trees that live for a frame.
+    /// Leaves along a space-filling curve, bins above them: for trees that live for a frame.
     Fast,
-    /// Sixteen bins along each axis.
+    /// Up to 32 bins along each axis at every node.
     #[default]
     Balanced,
-    /// Thirty-two bins, and every split of small sets looked at.
+    /// At present the same as balanced.
     Best,
 }
 
@@ -97,9 +98,12 @@ impl Bvh {
     pub(crate) fn over(items: Items, options: &BuildOptions) -> Self {
         let block = options.block.clamp(1, LEAF_MAX).next_power_of_two();
         let leaf_size = options.leaf_size.clamp(1, LEAF_MAX);
-        let settings = Settings { leaf_size, block: Blocks(block.trailing_zeros() as i32) };
+        let settings = Settings { leaf_size, block: Blocks(block.trailing_zeros() as i32), careless: 0 };
         let left_out = items.left_out;
-        let (binary, order) = binned::build(items, &settings);
+        let (binary, order) = match options.quality {
+            Quality::Fast => morton::build(items, leaf_size),
+            Quality::Balanced | Quality::Best => binned::build(items, &settings),
+        };
         let (nodes, mut stats) = collapse::collapse(&binary, block);
         stats.items = order.len();
         stats.left_out = left_out;
