@@ -49,7 +49,7 @@ mod stack;
 mod triangle;
 mod triangles;
 
-pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality};
+pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality, RefitError};
 pub use inspect::Visits;
 pub use packet::PACKET;
 pub use triangle::intersect_triangle;

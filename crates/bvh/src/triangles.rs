@@ -5,7 +5,7 @@ mod build;
 use crate::lanes::{less, max, min};
 use crate::pages::Pages;
 use crate::triangle::Shear;
-use crate::{BuildStats, Bvh, Leaf, PACKET};
+use crate::{BuildStats, Bvh, Leaf, PACKET, RefitError};
 use bytemuck::{Pod, Zeroable};
 use juggler_math::{Aabb, Ray, Vec3};
 use std::fmt;
@@ -43,6 +43,14 @@ pub enum TriangleError {
         /// How many there are.
         triangles: usize,
     },
+    /// They are not those that the tree was built over.
+    Refit(RefitError),
+}
+
+impl From<RefitError> for TriangleError {
+    fn from(error: RefitError) -> Self {
+        Self::Refit(error)
+    }
 }
 
 impl fmt::Display for TriangleError {
@@ -51,6 +59,7 @@ impl fmt::Display for TriangleError {
             Self::NoSuchVertex { triangle, vertex, vertices } => {
                 write!(f, "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices")
             }
+            Self::Refit(error) => error.fmt(f),
             Self::TooMany { triangles } => {
                 write!(f, "{triangles} triangles are more than the {} that a tree can hold", crate::MAX_ITEMS)
             }

@@ -4,6 +4,7 @@
 
 use super::BuildStats;
 use super::binary::BinaryNode;
+use super::refit::sah_cost;
 use crate::node::{Child, Node, WIDTH};
 use crate::pages::Pages;
 use rayon::prelude::*;
@@ -16,18 +17,16 @@ const SMALL: usize = 1 << 13;
 /// The wide tree, root first, and what can be said about it. The root is there even when there is no item.
 pub(super) fn collapse(binary: &[BinaryNode], block: usize) -> (Pages<Node>, BuildStats) {
     let Some(root) = binary.first() else {
-        return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, ..BuildStats::default() });
+        return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() });
     };
     let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
     // A tree that is one leaf gets a root above it.
     let above = [*root];
-    let collapser = Collapser { binary: if root.is_leaf() { &above } else { binary }, block };
+    let collapser = Collapser { binary: if root.is_leaf() { &above } else { binary } };
     let subtree = collapser.subtree(0, levels);
-    let mut stats = subtree.stats;
     let nodes = flatten(subtree.pieces);
-    stats.nodes = nodes.len();
-    let area = root.half_area();
-    stats.sah_cost = if area > 0.0 { stats.sah_cost / area } else { 0.0 };
+    let sah_cost = sah_cost(&nodes, block);
+    let stats = BuildStats { nodes: nodes.len(), sah_cost, block, ..subtree.stats };
     (nodes, stats)
 }
 
@@ -57,13 +56,12 @@ fn flatten(pieces: Vec<Vec<Node>>) -> Pages<Node> {
 /// A wide subtree, root first.
 struct Subtree {
     pieces: Vec<Vec<Node>>,
-    /// With `nodes` not yet counted and the cost times the area of the whole tree.
+    /// Depth, stack and leaves.
     stats: BuildStats,
 }
 
 struct Collapser<'a> {
     binary: &'a [BinaryNode],
-    block: usize,
 }
 
 impl Collapser<'_> {
@@ -78,7 +76,7 @@ impl Collapser<'_> {
         let inner: Vec<(usize, usize)> = self.inner(&members).collect();
         let below: Vec<Subtree> = inner.par_iter().map(|&(_, member)| self.subtree(member, levels - 1)).collect();
         let (mut pieces, mut size) = (vec![Vec::new()], 1);
-        let mut stats = self.alone(binary, &members);
+        let mut stats = self.alone(&members);
         for ((slot, _), subtree) in inner.iter().zip(below) {
             node.children[*slot] = Child::node(size);
             size += subtree.pieces.iter().map(Vec::len).sum::<usize>();
@@ -94,7 +92,7 @@ impl Collapser<'_> {
         let place = nodes.len();
         let (node, members) = self.node(binary);
         nodes.push(node);
-        let mut stats = self.alone(binary, &members);
+        let mut stats = self.alone(&members);
         for (slot, member) in self.inner(&members) {
             nodes[place].children[slot] = Child::node(nodes.len() - place);
             add_child(&mut stats, &self.emit(member, nodes), members.count);
@@ -134,16 +132,12 @@ impl Collapser<'_> {
         members
     }
 
-    /// What the node and its leaves count for.
-    fn alone(&self, binary: usize, members: &Members) -> BuildStats {
+    /// Of the node and its leaves.
+    fn alone(&self, members: &Members) -> BuildStats {
         let mut stats = BuildStats { depth: 1, stack: members.count, ..BuildStats::default() };
-        stats.sah_cost = self.binary[binary].half_area();
-        for &(member, area) in members.list() {
+        for &(member, _) in members.list() {
             let count = self.binary[member].count as usize;
-            if count > 0 {
-                stats.leaf_sizes[count] += 1;
-                stats.sah_cost += area * count.div_ceil(self.block) as f64;
-            }
+            stats.leaf_sizes[count] += usize::from(count > 0);
         }
         stats
     }
@@ -153,7 +147,6 @@ impl Collapser<'_> {
 fn add_child(stats: &mut BuildStats, child: &BuildStats, count: usize) {
     stats.depth = stats.depth.max(child.depth + 1);
     stats.stack = stats.stack.max(count - 1 + child.stack);
-    stats.sah_cost += child.sah_cost;
     for (all, some) in stats.leaf_sizes.iter_mut().zip(child.leaf_sizes) {
         *all += some;
     }

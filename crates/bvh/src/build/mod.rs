@@ -7,6 +7,7 @@ mod collapse;
 mod item;
 mod morton;
 mod partition;
+mod refit;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
@@ -16,8 +17,10 @@ use crate::node::LEAF_MAX;
 use binary::BinaryNode;
 use binned::Settings;
 use bins::Blocks;
-pub(crate) use item::Items;
+pub(crate) use item::{Extent, Items};
 use juggler_math::Aabb;
+pub use refit::RefitError;
+pub(crate) use refit::{extent, refit};
 use std::convert::Infallible;
 
 /// Most items that a tree can hold.
@@ -75,6 +78,8 @@ pub struct BuildStats {
     pub sah_cost: f64,
     /// Entries that a traversal's stack may need.
     pub(crate) stack: usize,
+    /// How many items are tested for the price of one.
+    pub(crate) block: usize,
 }
 
 impl Bvh {
