@@ -1,9 +1,9 @@
-//! From two wide to eight wide: each node takes the place of its children, the largest first, until there
-//! are eight (Wald, Benthin, Boulos 2008, "Getting Rid of Packets", section 3.2). Nodes lie in depth-first
-//! order, below a node its largest child first.
+//! From two wide to eight wide, as planned. Nodes lie in depth-first order, below a node its largest child
+//! first.
 
 use super::BuildStats;
 use super::binary::BinaryNode;
+use super::plan::Plan;
 use super::refit::sah_cost;
 use crate::node::{Child, Node, WIDTH};
 use crate::pages::Pages;
@@ -16,13 +16,11 @@ const SMALL: usize = 1 << 13;
 
 /// The wide tree, root first, and what can be said about it. The root is there even when there is no item.
 pub(super) fn collapse(binary: &[BinaryNode], block: usize) -> (Pages<Node>, BuildStats) {
-    let Some(root) = binary.first() else {
+    if binary.is_empty() {
         return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() });
-    };
+    }
     let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
-    // A tree that is one leaf gets a root above it.
-    let above = [*root];
-    let collapser = Collapser { binary: if root.is_leaf() { &above } else { binary } };
+    let collapser = Collapser { binary, plan: Plan::new(binary, block) };
     let subtree = collapser.subtree(0, levels);
     let nodes = flatten(subtree.pieces);
     let sah_cost = sah_cost(&nodes, block);
@@ -62,6 +60,7 @@ struct Subtree {
 
 struct Collapser<'a> {
     binary: &'a [BinaryNode],
+    plan: Plan<'a>,
 }
 
 impl Collapser<'_> {
@@ -120,15 +119,8 @@ impl Collapser<'_> {
 
     /// The binary nodes that become children of the wide node in place of `binary`, the largest first.
     fn members(&self, binary: usize) -> Members {
-        let mut members = Members { list: [(binary, self.binary[binary].half_area()); WIDTH], count: 1 };
-        while members.count < WIDTH {
-            let open = members.list().iter().position(|&(member, _)| !self.binary[member].is_leaf());
-            let Some(slot) = open else { break };
-            let first = self.binary[members.remove(slot)].first as usize;
-            for member in [first, first + 1] {
-                members.insert(member, self.binary[member].half_area());
-            }
-        }
+        let mut members = Members { list: [(binary, 0.0); WIDTH], count: 0 };
+        self.plan.children(binary, &mut |member| members.insert(member, self.binary[member].half_area()));
         members
     }
 
@@ -161,13 +153,6 @@ struct Members {
 impl Members {
     fn list(&self) -> &[(usize, f64)] {
         &self.list[..self.count]
-    }
-
-    fn remove(&mut self, slot: usize) -> usize {
-        let (member, _) = self.list[slot];
-        self.list.copy_within(slot + 1..self.count, slot);
-        self.count -= 1;
-        member
     }
 
     /// Behind those of equal area.

@@ -7,6 +7,7 @@ mod collapse;
 mod item;
 mod morton;
 mod partition;
+mod plan;
 mod refit;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
