@@ -40,6 +40,7 @@
 mod build;
 mod inspect;
 mod lanes;
+mod moving;
 mod node;
 mod packet;
 mod pages;
@@ -56,6 +57,7 @@ pub use triangle::intersect_triangle;
 pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
 
 use juggler_math::{Aabb, Ray};
+use moving::Motion;
 use node::Node;
 use pages::Pages;
 use std::ops::Range;
@@ -65,6 +67,8 @@ use std::ops::Range;
 pub struct Bvh {
     /// The root is node 0; there is always one.
     nodes: Pages<Node>,
+    /// Where things move, the boxes at shutter open and close beside each node; else nothing.
+    motion: Pages<Motion>,
     order: Vec<u32>,
     bounds: Aabb,
     stats: BuildStats,
@@ -102,6 +106,6 @@ impl Bvh {
 
     /// Bytes of memory that the tree holds, without the items.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.nodes.bytes() + self.order.capacity() * size_of::<u32>()
+        size_of::<Self>() + self.nodes.bytes() + self.motion.bytes() + self.order.capacity() * size_of::<u32>()
     }
 }

@@ -15,15 +15,13 @@ const SAH_DEPTH: usize = 44;
 const TASK: usize = 1 << 14;
 /// Larger sets are cut into pieces of this size for several threads.
 const CHUNK: usize = 1 << 13;
-/// A node's test in units of one leaf block's test. Below 1: a node of the binary tree is a seventh to a half
-/// of an eight-wide one.
-const NODE_COST: f32 = 0.5;
-
 /// What decides the shape of the tree.
 #[derive(Clone, Copy)]
 pub(super) struct Settings {
     pub leaf_size: usize,
     pub block: Blocks,
+    /// A node's test in units of one leaf block's test.
+    pub node_cost: f32,
     /// Sets up to this size are halved as they lie: they will mostly be one wide node.
     pub careless: usize,
 }
@@ -171,7 +169,7 @@ impl Task<'_> {
             let (_, cut) = found?;
             let blocks = self.settings.block.of(wide::i32x4::splat(count as i32)).to_array()[0];
             // Boxes without area have a NaN here and become leaves too.
-            let pays = NODE_COST + cut.cost < blocks;
+            let pays = self.settings.node_cost + cut.cost < blocks;
             if !pays {
                 return None;
             }

@@ -15,12 +15,12 @@ const TASK_LEVELS: usize = 3;
 const SMALL: usize = 1 << 13;
 
 /// The wide tree, root first, and what can be said about it. The root is there even when there is no item.
-pub(super) fn collapse(binary: &[BinaryNode], block: usize) -> (Pages<Node>, BuildStats) {
+pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) -> (Pages<Node>, BuildStats) {
     if binary.is_empty() {
         return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() });
     }
     let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
-    let collapser = Collapser { binary, plan: Plan::new(binary, block) };
+    let collapser = Collapser { binary, plan: Plan::new(binary, leaf_size, block) };
     let subtree = collapser.subtree(0, levels);
     let nodes = flatten(subtree.pieces);
     let sah_cost = sah_cost(&nodes, block);
@@ -105,8 +105,8 @@ impl Collapser<'_> {
         let mut node = Node::EMPTY;
         for &(member, _) in members.list().iter().rev() {
             let source = &self.binary[member];
-            let leaf = || Child::leaf(source.first as usize, source.count as usize);
-            node.add(source.low, source.high, if source.is_leaf() { leaf() } else { Child::ROOT });
+            let child = self.plan.leaf(member).map_or(Child::ROOT, |(first, count)| Child::leaf(first, count));
+            node.add(source.low, source.high, child);
         }
         (node, members)
     }
@@ -114,7 +114,7 @@ impl Collapser<'_> {
     /// Slots and binary nodes of the children that are not leaves, the largest first. It has the last slot.
     fn inner(&self, members: &Members) -> impl Iterator<Item = (usize, usize)> {
         let slots = (0..members.count).rev().zip(members.list());
-        slots.map(|(slot, &(member, _))| (slot, member)).filter(|&(_, member)| !self.binary[member].is_leaf())
+        slots.map(|(slot, &(member, _))| (slot, member)).filter(|&(_, member)| self.plan.leaf(member).is_none())
     }
 
     /// The binary nodes that become children of the wide node in place of `binary`, the largest first.
@@ -128,8 +128,9 @@ impl Collapser<'_> {
     fn alone(&self, members: &Members) -> BuildStats {
         let mut stats = BuildStats { depth: 1, stack: members.count, ..BuildStats::default() };
         for &(member, _) in members.list() {
-            let count = self.binary[member].count as usize;
-            stats.leaf_sizes[count] += usize::from(count > 0);
+            if let Some((_, count)) = self.plan.leaf(member) {
+                stats.leaf_sizes[count] += 1;
+            }
         }
         stats
     }

@@ -29,11 +29,21 @@ pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, V
         Ok::<_, Infallible>(keys.iter().fold(Extent::EMPTY, |all, key| all.union(item(key).extent())).aabb())
     };
     let Ok(boxes) = Items::new(clusters.len(), bounds);
-    let (mut nodes, order) = binned::build(boxes, &Settings { leaf_size: 1, block: Blocks(0), careless: 4 });
+    let (mut nodes, order) =
+        binned::build(boxes, &Settings { leaf_size: 1, block: Blocks(0), node_cost: 0.0, careless: 4 });
+    // The items of the clusters in the order that the tree gives to the clusters.
+    let mut starts = vec![0; order.len()];
+    let mut numbers = Vec::with_capacity(items.len());
+    for (start, &cluster) in starts.iter_mut().zip(&order) {
+        let (first, count) = clusters[cluster as usize];
+        *start = numbers.len() as u32;
+        numbers.extend(keys[first as usize..][..count as usize].iter().map(|key| item(key).number()));
+    }
     nodes.par_iter_mut().filter(|node| node.is_leaf()).for_each(|leaf| {
-        (leaf.first, leaf.count) = clusters[order[leaf.first as usize] as usize];
+        let place = leaf.first as usize;
+        (leaf.first, leaf.count) = (starts[place], clusters[order[place] as usize].1);
     });
-    (nodes, keys.par_iter().map(|key| item(key).number()).collect())
+    (nodes, numbers)
 }
 
 /// The map from centers to keys: the place along the curve in the upper bits, below it the item's position.
