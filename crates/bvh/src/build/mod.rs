@@ -45,6 +45,8 @@ pub enum Quality {
     /// Up to 32 bins along each axis at every node; then the largest subtrees are moved to better places.
     #[default]
     Balanced,
+    // Splitting large triangles beforehand (Karras, Aila 2013) was tried: with 25 % more references the cost fell
+    // by 5 % for hair, rose by 3 to 13 % elsewhere.
     /// As balanced, and many more subtrees are tried: for trees that live for minutes.
     Best,
 }

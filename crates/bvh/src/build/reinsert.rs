@@ -12,6 +12,8 @@ use rayon::prelude::*;
 
 /// How often moves are looked for. More rounds bring next to nothing.
 const ROUNDS: usize = 4;
+/// A search ends after so many nodes; where many boxes overlap it would see them all.
+const STEPS: usize = 2000;
 /// Trees that became deeper than this are not used: 72 wide levels are the limit of the traversal.
 const MAX_DEPTH: usize = 72;
 
@@ -96,12 +98,14 @@ impl Tree {
         let mut saved = area(self.extent(parent));
         let (mut pivot, mut other) = (parent, sibling(from));
         let mut remaining = self.extent(other);
-        loop {
+        let mut steps = 0;
+        while steps < STEPS {
             stack.push((saved, other));
             while let Some((saved, to)) = stack.pop() {
-                if saved - moved_area <= best.gain {
+                if saved - moved_area <= best.gain || steps == STEPS {
                     continue;
                 }
+                steps += 1;
                 let node = &self.nodes[to];
                 let gain = saved - area(node.extent().union(moved));
                 if gain > best.gain && to != sibling(from) {
