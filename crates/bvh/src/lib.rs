@@ -40,6 +40,7 @@
 mod build;
 mod inspect;
 mod lanes;
+mod moving;
 mod node;
 mod packet;
 mod ray_lanes;
@@ -50,7 +51,7 @@ mod stack;
 mod triangle;
 mod triangles;
 
-pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality};
+pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality, RefitError};
 pub use inspect::Visits;
 pub use packet::PACKET;
 pub use triangle::intersect_triangle;
@@ -58,6 +59,7 @@ pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
 
 use fearless_simd::Level;
 use juggler_math::{Aabb, Ray};
+use moving::Motion;
 use node::Node;
 use pages::Pages;
 use std::ops::Range;
@@ -67,6 +69,8 @@ use std::ops::Range;
 pub struct Bvh {
     /// The root is node 0; there is always one.
     nodes: Pages<Node>,
+    /// Where things move, the boxes at shutter open and close beside each node; else nothing.
+    motion: Pages<Motion>,
     order: Vec<u32>,
     bounds: Aabb,
     stats: BuildStats,
@@ -142,6 +146,6 @@ impl Bvh {
 
     /// Bytes of memory that the tree holds, without the items.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.nodes.bytes() + self.order.capacity() * size_of::<u32>()
+        size_of::<Self>() + self.nodes.bytes() + self.motion.bytes() + self.order.capacity() * size_of::<u32>()
     }
 }

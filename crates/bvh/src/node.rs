@@ -75,12 +75,16 @@ impl Node {
     /// Puts a child into the next free slot.
     pub fn add(&mut self, low: [f32; 3], high: [f32; 3], child: Child) {
         let slot = self.count as usize;
+        self.set_bounds(slot, low, high);
+        self.children[slot] = child;
+        self.count += 1;
+    }
+
+    pub fn set_bounds(&mut self, slot: usize, low: [f32; 3], high: [f32; 3]) {
         for axis in 0..3 {
             self.bounds[axis][0][slot] = low[axis];
             self.bounds[axis][1][slot] = high[axis];
         }
-        self.children[slot] = child;
-        self.count += 1;
     }
 
     /// Which boxes are met (bit per slot), and where each is entered.

@@ -33,6 +33,11 @@ impl BinaryNode {
         x * y + y * z + z * x
     }
 
+    pub fn extent(&self) -> Extent {
+        let ([a, b, c], [d, e, f]) = (self.low, self.high);
+        Extent { low: [a, b, c, 0.0].into(), high: [d, e, f, 0.0].into() }
+    }
+
     pub fn aabb(&self) -> Aabb {
         Aabb { min: self.low.into(), max: self.high.into() }
     }

@@ -15,15 +15,15 @@ const SAH_DEPTH: usize = 44;
 const TASK: usize = 1 << 14;
 /// Larger sets are cut into pieces of this size for several threads.
 const CHUNK: usize = 1 << 13;
-/// A node's test in units of one leaf block's test. Below 1: a node of the binary tree is a seventh to a half
-/// of an eight-wide one.
-const NODE_COST: f32 = 0.5;
-
 /// What decides the shape of the tree.
 #[derive(Clone, Copy)]
 pub(super) struct Settings {
     pub leaf_size: usize,
     pub block: Blocks,
+    /// A node's test in units of one leaf block's test.
+    pub node_cost: f32,
+    /// Sets up to this size are halved as they lie: they will mostly be one wide node.
+    pub careless: usize,
 }
 
 /// The binary tree, empty when there are no items, and the numbers of the items in leaf order.
@@ -115,8 +115,13 @@ fn halve(items: &mut [Item], around: &Around) -> (usize, [Around; 2]) {
         let order = |a: &Item, b: &Item| center(a).total_cmp(&center(b)).then(a.number().cmp(&b.number()));
         items.select_nth_unstable_by(middle, order);
     }
-    let (left, right) = items.split_at(middle);
-    (middle, [Around::of(left), Around::of(right)])
+    parts(items)
+}
+
+/// The two halves as they lie.
+fn parts(items: &[Item]) -> (usize, [Around; 2]) {
+    let (left, right) = items.split_at(items.len() / 2);
+    (left.len(), [Around::of(left), Around::of(right)])
 }
 
 fn build_alone(set: Set<'_>, settings: &Settings) -> Subtree {
@@ -156,12 +161,15 @@ impl Task<'_> {
         if count <= 1 {
             return None;
         }
+        if count <= self.settings.careless {
+            return Some(parts(items));
+        }
         let found = self.cut(items, around, depth);
         if count <= self.settings.leaf_size {
             let (_, cut) = found?;
             let blocks = self.settings.block.of(wide::i32x4::splat(count as i32)).to_array()[0];
             // Boxes without area have a NaN here and become leaves too.
-            let pays = NODE_COST + cut.cost < blocks;
+            let pays = self.settings.node_cost + cut.cost < blocks;
             if !pays {
                 return None;
             }

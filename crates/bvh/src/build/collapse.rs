@@ -1,9 +1,10 @@
-//! From two wide to eight wide: each node takes the place of its children, the largest first, until there
-//! are eight (Wald, Benthin, Boulos 2008, "Getting Rid of Packets", section 3.2). Nodes lie in depth-first
-//! order, below a node its largest child first.
+//! From two wide to eight wide, as planned. Nodes lie in depth-first order, below a node its largest child
+//! first.
 
 use super::BuildStats;
 use super::binary::BinaryNode;
+use super::plan::Plan;
+use super::refit::sah_cost;
 use crate::node::{Child, Node, WIDTH};
 use crate::pages::Pages;
 use rayon::prelude::*;
@@ -14,20 +15,16 @@ const TASK_LEVELS: usize = 3;
 const SMALL: usize = 1 << 13;
 
 /// The wide tree, root first, and what can be said about it. The root is there even when there is no item.
-pub(super) fn collapse(binary: &[BinaryNode], block: usize) -> (Pages<Node>, BuildStats) {
-    let Some(root) = binary.first() else {
-        return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, ..BuildStats::default() });
-    };
+pub(super) fn collapse(binary: &[BinaryNode], leaf_size: usize, block: usize) -> (Pages<Node>, BuildStats) {
+    if binary.is_empty() {
+        return (vec![Node::EMPTY].into(), BuildStats { nodes: 1, depth: 1, block, ..BuildStats::default() });
+    }
     let levels = if binary.len() < SMALL { 0 } else { TASK_LEVELS };
-    // A tree that is one leaf gets a root above it.
-    let above = [*root];
-    let collapser = Collapser { binary: if root.is_leaf() { &above } else { binary }, block };
+    let collapser = Collapser { binary, plan: Plan::new(binary, leaf_size, block) };
     let subtree = collapser.subtree(0, levels);
-    let mut stats = subtree.stats;
     let nodes = flatten(subtree.pieces);
-    stats.nodes = nodes.len();
-    let area = root.half_area();
-    stats.sah_cost = if area > 0.0 { stats.sah_cost / area } else { 0.0 };
+    let sah_cost = sah_cost(&nodes, block);
+    let stats = BuildStats { nodes: nodes.len(), sah_cost, block, ..subtree.stats };
     (nodes, stats)
 }
 
@@ -57,13 +54,13 @@ fn flatten(pieces: Vec<Vec<Node>>) -> Pages<Node> {
 /// A wide subtree, root first.
 struct Subtree {
     pieces: Vec<Vec<Node>>,
-    /// With `nodes` not yet counted and the cost times the area of the whole tree.
+    /// Depth, stack and leaves.
     stats: BuildStats,
 }
 
 struct Collapser<'a> {
     binary: &'a [BinaryNode],
-    block: usize,
+    plan: Plan<'a>,
 }
 
 impl Collapser<'_> {
@@ -78,7 +75,7 @@ impl Collapser<'_> {
         let inner: Vec<(usize, usize)> = self.inner(&members).collect();
         let below: Vec<Subtree> = inner.par_iter().map(|&(_, member)| self.subtree(member, levels - 1)).collect();
         let (mut pieces, mut size) = (vec![Vec::new()], 1);
-        let mut stats = self.alone(binary, &members);
+        let mut stats = self.alone(&members);
         for ((slot, _), subtree) in inner.iter().zip(below) {
             node.children[*slot] = Child::node(size);
             size += subtree.pieces.iter().map(Vec::len).sum::<usize>();
@@ -94,7 +91,7 @@ impl Collapser<'_> {
         let place = nodes.len();
         let (node, members) = self.node(binary);
         nodes.push(node);
-        let mut stats = self.alone(binary, &members);
+        let mut stats = self.alone(&members);
         for (slot, member) in self.inner(&members) {
             nodes[place].children[slot] = Child::node(nodes.len() - place);
             add_child(&mut stats, &self.emit(member, nodes), members.count);
@@ -108,8 +105,8 @@ impl Collapser<'_> {
         let mut node = Node::EMPTY;
         for &(member, _) in members.list().iter().rev() {
             let source = &self.binary[member];
-            let leaf = || Child::leaf(source.first as usize, source.count as usize);
-            node.add(source.low, source.high, if source.is_leaf() { leaf() } else { Child::ROOT });
+            let child = self.plan.leaf(member).map_or(Child::ROOT, |(first, count)| Child::leaf(first, count));
+            node.add(source.low, source.high, child);
         }
         (node, members)
     }
@@ -117,32 +114,22 @@ impl Collapser<'_> {
     /// Slots and binary nodes of the children that are not leaves, the largest first. It has the last slot.
     fn inner(&self, members: &Members) -> impl Iterator<Item = (usize, usize)> {
         let slots = (0..members.count).rev().zip(members.list());
-        slots.map(|(slot, &(member, _))| (slot, member)).filter(|&(_, member)| !self.binary[member].is_leaf())
+        slots.map(|(slot, &(member, _))| (slot, member)).filter(|&(_, member)| self.plan.leaf(member).is_none())
     }
 
     /// The binary nodes that become children of the wide node in place of `binary`, the largest first.
     fn members(&self, binary: usize) -> Members {
-        let mut members = Members { list: [(binary, self.binary[binary].half_area()); WIDTH], count: 1 };
-        while members.count < WIDTH {
-            let open = members.list().iter().position(|&(member, _)| !self.binary[member].is_leaf());
-            let Some(slot) = open else { break };
-            let first = self.binary[members.remove(slot)].first as usize;
-            for member in [first, first + 1] {
-                members.insert(member, self.binary[member].half_area());
-            }
-        }
+        let mut members = Members { list: [(binary, 0.0); WIDTH], count: 0 };
+        self.plan.children(binary, &mut |member| members.insert(member, self.binary[member].half_area()));
         members
     }
 
-    /// What the node and its leaves count for.
-    fn alone(&self, binary: usize, members: &Members) -> BuildStats {
+    /// Of the node and its leaves.
+    fn alone(&self, members: &Members) -> BuildStats {
         let mut stats = BuildStats { depth: 1, stack: members.count, ..BuildStats::default() };
-        stats.sah_cost = self.binary[binary].half_area();
-        for &(member, area) in members.list() {
-            let count = self.binary[member].count as usize;
-            if count > 0 {
+        for &(member, _) in members.list() {
+            if let Some((_, count)) = self.plan.leaf(member) {
                 stats.leaf_sizes[count] += 1;
-                stats.sah_cost += area * count.div_ceil(self.block) as f64;
             }
         }
         stats
@@ -153,7 +140,6 @@ impl Collapser<'_> {
 fn add_child(stats: &mut BuildStats, child: &BuildStats, count: usize) {
     stats.depth = stats.depth.max(child.depth + 1);
     stats.stack = stats.stack.max(count - 1 + child.stack);
-    stats.sah_cost += child.sah_cost;
     for (all, some) in stats.leaf_sizes.iter_mut().zip(child.leaf_sizes) {
         *all += some;
     }
@@ -168,13 +154,6 @@ struct Members {
 impl Members {
     fn list(&self) -> &[(usize, f64)] {
         &self.list[..self.count]
-    }
-
-    fn remove(&mut self, slot: usize) -> usize {
-        let (member, _) = self.list[slot];
-        self.list.copy_within(slot + 1..self.count, slot);
-        self.count -= 1;
-        member
     }
 
     /// Behind those of equal area.

@@ -35,6 +35,11 @@ impl Extent {
         [x, y, z]
     }
 
+    pub fn aabb(self) -> Aabb {
+        let point = |v: f32x4| Vec3::from_slice(&v.to_array()[..3]);
+        Aabb { min: point(self.low), max: point(self.high) }
+    }
+
     /// The axis along which the box is longest.
     pub fn longest_axis(self) -> usize {
         let [x, y, z] = self.half_sides();

@@ -5,32 +5,49 @@ mod binned;
 mod bins;
 mod collapse;
 mod item;
+mod morton;
 mod partition;
+mod plan;
+mod refit;
+mod reinsert;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
 
 use crate::Bvh;
 use crate::node::LEAF_MAX;
+use crate::pages::Pages;
 use binary::BinaryNode;
 use binned::Settings;
 use bins::Blocks;
-pub(crate) use item::Items;
+pub(crate) use item::{Extent, Items};
 use juggler_math::Aabb;
+pub use refit::RefitError;
+pub(crate) use refit::{extent, refit};
 use std::convert::Infallible;
 
 /// Most items that a tree can hold.
 pub const MAX_ITEMS: usize = 1 << 28;
 
+/// The test of a node of the binary tree in units of one leaf block's test. Below 1, because it is a seventh
+/// to a half of an eight-wide one. Rays take the same time for anything from 0.2 to 1.2.
+const NODE_COST: f32 = 0.5;
+
+/// Of so many nodes one is tried to be moved, each time that the tree is made better.
+const SHARE_BALANCED: usize = 128;
+const SHARE_BEST: usize = 4;
+
 /// How much work goes into a tree. The same boxes and quality always give the same tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// Eight bins along the longest axis: for trees that live for a frame.
+    /// Leaves along a space-filling curve, bins above them: for trees that live for a frame.
     Fast,
-    /// Sixteen bins along each axis.
+    /// Up to 32 bins along each axis at every node; then the largest subtrees are moved to better places.
     #[default]
     Balanced,
-    /// Thirty-two bins, and every split of small sets looked at.
+    // Splitting large triangles beforehand (Karras, Aila 2013) was tried: with 25 % more references the cost fell
+    // by 5 % for hair, rose by 3 to 13 % elsewhere.
+    /// As balanced, and many more subtrees are tried: for trees that live for minutes.
     Best,
 }
 
@@ -74,6 +91,8 @@ pub struct BuildStats {
     pub sah_cost: f64,
     /// Entries that a traversal's stack may need.
     pub(crate) stack: usize,
+    /// How many items are tested for the price of one.
+    pub(crate) block: usize,
 }
 
 impl Bvh {
@@ -97,13 +116,18 @@ impl Bvh {
     pub(crate) fn over(items: Items, options: &BuildOptions) -> Self {
         let block = options.block.clamp(1, LEAF_MAX).next_power_of_two();
         let leaf_size = options.leaf_size.clamp(1, LEAF_MAX);
-        let settings = Settings { leaf_size, block: Blocks(block.trailing_zeros() as i32) };
+        let block_bits = Blocks(block.trailing_zeros() as i32);
+        let settings = Settings { leaf_size, block: block_bits, node_cost: NODE_COST, careless: 0 };
         let left_out = items.left_out;
-        let (binary, order) = binned::build(items, &settings);
-        let (nodes, mut stats) = collapse::collapse(&binary, block);
+        let (binary, order) = match options.quality {
+            Quality::Fast => morton::build(items, leaf_size),
+            Quality::Balanced => reinsert::optimize(binned::build(items, &settings), SHARE_BALANCED),
+            Quality::Best => reinsert::optimize(binned::build(items, &settings), SHARE_BEST),
+        };
+        let (nodes, mut stats) = collapse::collapse(&binary, leaf_size, block);
         stats.items = order.len();
         stats.left_out = left_out;
         let bounds = binary.first().map_or(Aabb::EMPTY, BinaryNode::aabb);
-        Self { nodes, order, bounds, stats, level: fearless_simd::Level::new() }
+        Self { nodes, motion: Pages::zeroed(0), order, bounds, stats, level: fearless_simd::Level::new() }
     }
 }

@@ -1,7 +1,7 @@
 //! From triangles to their tree: boxes, tree, then the blocks of the leaves.
 
 use super::{Block, LANES, TriangleBvh, TriangleError};
-use crate::build::Items;
+use crate::build::{Extent, Items, extent, refit};
 use crate::node::{Child, Node};
 use crate::pages::Pages;
 use crate::triangle::has_area;
@@ -33,9 +33,27 @@ impl TriangleBvh {
             for (lane, &triangle) in order[items.start as usize..items.end as usize].iter().enumerate() {
                 block.set(lane, triangle, mesh.corners(triangle as usize)?);
             }
-            Ok(())
+            Ok::<_, TriangleError>(())
         })?;
         Ok(Self { bvh, blocks })
+    }
+
+    /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps
+    /// its shape, see [`Bvh::refit`]. After an error the tree is as it was.
+    pub fn refit(&mut self, positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), TriangleError> {
+        let mesh = Mesh { positions, triangles };
+        let numbers = (0..triangles.len()).into_par_iter().with_min_len(CHUNK);
+        if let Some(error) = numbers.find_map_first(|triangle| mesh.corners(triangle).err()) {
+            return Err(error);
+        }
+        let usable = |triangle| mesh.corners(triangle).is_ok_and(has_area);
+        let lanes = self.blocks.iter().flat_map(|block| block.index).filter(|&triangle| triangle != u32::MAX);
+        self.bvh.check_refit(triangles.len(), lanes, usable)?;
+        let boxes: Vec<Extent> =
+            self.blocks.par_iter_mut().with_min_len(CHUNK).map(|block| mesh.refill(block)).collect();
+        self.bvh.bounds = refit(&mut self.bvh.nodes, |leaf| boxes[leaf.items().start as usize]);
+        self.bvh.update_cost();
+        Ok(())
     }
 }
 
@@ -85,6 +103,19 @@ impl Mesh<'_> {
             *corner = *self.positions.get(vertex as usize).ok_or_else(missing)?;
         }
         Ok(corners)
+    }
+
+    /// Gives a block's triangles their new corners; returns the box around them.
+    fn refill(&self, block: &mut Block) -> Extent {
+        let mut around = Extent::EMPTY;
+        let lanes = block.index.into_iter().enumerate().filter(|&(_, triangle)| triangle != u32::MAX);
+        for (lane, triangle) in lanes {
+            let corners = self.corners(triangle as usize).ok().filter(|&corners| has_area(corners));
+            // One that can no longer be hit becomes a point, which no ray hits.
+            block.set(lane, triangle, corners.unwrap_or_default());
+            around = around.union(corners.map_or(Extent::EMPTY, |corners| extent(&bounds_of(corners))));
+        }
+        around
     }
 }
 

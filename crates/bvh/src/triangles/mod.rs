@@ -13,7 +13,7 @@ use crate::packet::{GROUP, Group};
 use crate::slabs::{Bundle, Slabs};
 use crate::stack::Stack;
 use crate::triangle::Shear;
-use crate::{BuildStats, Bvh};
+use crate::{BuildStats, Bvh, RefitError};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
@@ -70,6 +70,14 @@ pub enum TriangleError {
         /// How many there are.
         triangles: usize,
     },
+    /// They are not those that the tree was built over.
+    Refit(RefitError),
+}
+
+impl From<RefitError> for TriangleError {
+    fn from(error: RefitError) -> Self {
+        Self::Refit(error)
+    }
 }
 
 impl fmt::Display for TriangleError {
@@ -78,6 +86,7 @@ impl fmt::Display for TriangleError {
             Self::NoSuchVertex { triangle, vertex, vertices } => {
                 write!(f, "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices")
             }
+            Self::Refit(error) => error.fmt(f),
             Self::TooMany { triangles } => {
                 write!(f, "{triangles} triangles are more than the {} that a tree can hold", crate::MAX_ITEMS)
             }

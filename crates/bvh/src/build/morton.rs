@@ -1,0 +1,117 @@
+//! The quick build: items are sorted along a Morton curve (Lauterbach et al. 2009, "Fast BVH Construction on
+//! GPUs") and cut into clusters of at most a leaf's size where the curve jumps; the tree above the clusters
+//! is built by binning, as in HLBVH (Pantaleoni and Luebke 2010), but down to the leaves.
+
+use super::binary::BinaryNode;
+use super::binned::{self, Settings};
+use super::bins::Blocks;
+use super::item::{Extent, Item, Items};
+use crate::pages::Pages;
+use rayon::prelude::*;
+use std::convert::Infallible;
+use wide::f32x4;
+
+/// Longer stretches of the curve are cut by several threads.
+const TASK: usize = 1 << 13;
+
+/// The binary tree, empty when there are no items, and the numbers of the items in leaf order.
+pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, Vec<u32>) {
+    let curve = Curve::new(items.around.centers, items.list().len());
+    let items = items.list();
+    let mut keys = Pages::zeroed(items.len());
+    keys.par_iter_mut().zip(&*items).enumerate().for_each(|(i, (key, item))| *key = curve.key(item, i));
+    keys.par_sort_unstable();
+    let item = |key: &u64| &items[curve.position(*key)];
+    let clusters = clusters(&keys, 0, leaf_size);
+    let bounds = |cluster: usize| {
+        let (first, count) = clusters[cluster];
+        let keys = &keys[first as usize..][..count as usize];
+        Ok::<_, Infallible>(keys.iter().fold(Extent::EMPTY, |all, key| all.union(item(key).extent())).aabb())
+    };
+    let Ok(boxes) = Items::new(clusters.len(), bounds);
+    let (mut nodes, order) =
+        binned::build(boxes, &Settings { leaf_size: 1, block: Blocks(0), node_cost: 0.0, careless: 4 });
+    // The items of the clusters in the order that the tree gives to the clusters.
+    let mut starts = vec![0; order.len()];
+    let mut numbers = Vec::with_capacity(items.len());
+    for (start, &cluster) in starts.iter_mut().zip(&order) {
+        let (first, count) = clusters[cluster as usize];
+        *start = numbers.len() as u32;
+        numbers.extend(keys[first as usize..][..count as usize].iter().map(|key| item(key).number()));
+    }
+    nodes.par_iter_mut().filter(|node| node.is_leaf()).for_each(|leaf| {
+        let place = leaf.first as usize;
+        (leaf.first, leaf.count) = (starts[place], clusters[order[place] as usize].1);
+    });
+    (nodes, numbers)
+}
+
+/// The map from centers to keys: the place along the curve in the upper bits, below it the item's position.
+struct Curve {
+    low: f32x4,
+    scale: f32x4,
+    position_bits: u32,
+}
+
+impl Curve {
+    /// As fine as the bits allow that the positions leave: 12 to 21 an axis.
+    fn new(centers: Extent, items: usize) -> Self {
+        let position_bits = usize::BITS - items.leading_zeros();
+        let cells = 1u32 << ((64 - position_bits) / 3).min(21);
+        let scale = (centers.high - centers.low).to_array().map(|side| (cells - 1) as f32 / side);
+        let scale = scale.map(|s| if s.is_finite() { s } else { 0.0 });
+        Self { low: centers.low, scale: f32x4::new(scale), position_bits }
+    }
+
+    fn key(&self, item: &Item, position: usize) -> u64 {
+        let [x, y, z, _] = ((item.center() - self.low) * self.scale).fast_trunc_int().to_array();
+        let code = spread(x) << 2 | spread(y) << 1 | spread(z);
+        code << self.position_bits | position as u64
+    }
+
+    fn position(&self, key: u64) -> usize {
+        (key & ((1 << self.position_bits) - 1)) as usize
+    }
+}
+
+/// 21 bits, each with two zeros above it.
+fn spread(value: i32) -> u64 {
+    let value = u64::from(value as u32) & 0x1f_ffff;
+    let value = (value | value << 32) & 0x001f_0000_0000_ffff;
+    let value = (value | value << 16) & 0x001f_0000_ff00_00ff;
+    let value = (value | value << 8) & 0x100f_00f0_0f00_f00f;
+    let value = (value | value << 4) & 0x10c3_0c30_c30c_30c3;
+    (value | value << 2) & 0x1249_2492_4924_9249
+}
+
+/// Stretches of at most `size` keys, as position of the first and count. Longer ones are cut where the
+/// highest bit changes; keys are different, at the latest in their positions.
+fn clusters(keys: &[u64], first: usize, size: usize) -> Vec<(u32, u32)> {
+    if keys.len() <= TASK {
+        let mut list = Vec::with_capacity(keys.len() / 4);
+        add_clusters(keys, first, size, &mut list);
+        return list;
+    }
+    let middle = jump(keys);
+    let (left, right) = keys.split_at(middle);
+    let (mut list, right) = rayon::join(|| clusters(left, first, size), || clusters(right, first + middle, size));
+    list.extend(right);
+    list
+}
+
+fn add_clusters(keys: &[u64], first: usize, size: usize, list: &mut Vec<(u32, u32)>) {
+    if keys.len() > size {
+        let middle = jump(keys);
+        add_clusters(&keys[..middle], first, size, list);
+        add_clusters(&keys[middle..], first + middle, size, list);
+    } else if !keys.is_empty() {
+        list.push((first as u32, keys.len() as u32));
+    }
+}
+
+/// Where the highest bit that is not the same in all keys changes.
+fn jump(keys: &[u64]) -> usize {
+    let differing = keys[0] ^ keys[keys.len() - 1];
+    let bit = 1u64 << (u64::BITS - 1 - differing.leading_zeros().min(u64::BITS - 1));
+    keys.partition_point(|key| key & bit == 0)
+}
