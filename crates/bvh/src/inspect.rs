@@ -1,11 +1,11 @@
 //! What a ray costs, for debug views: nodes, leaves and items visited.
 
+use crate::lanes::Bits;
 use crate::node::Child;
 use crate::slabs::{Slabs, cull_distance};
 use crate::stack::{Stack, distance, entry};
-use crate::lanes::Bits;
-use fearless_simd::{Level, dispatch};
 use crate::{Bvh, Leaf};
+use fearless_simd::{Level, dispatch};
 use juggler_math::Ray;
 
 /// What a search for the closest hit looked at.

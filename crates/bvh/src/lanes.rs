@@ -96,7 +96,7 @@ pub(crate) fn min(a: f32, b: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch};
+    use fearless_simd::dispatch;
 
     const KINDS: [f32; 8] = [f32::NEG_INFINITY, -1.0, -0.0, 0.0, 1e-40, 2.0, f32::INFINITY, f32::NAN];
 
@@ -114,13 +114,11 @@ mod tests {
 
     #[test]
     fn every_pair_of_kinds_in_every_lane_at_every_level() {
-        for level in crate::levels() {
+        for level in crate::simd_levels() {
             for shift in 0..8 {
                 let other: [f32; 8] = std::array::from_fn(|i| KINDS[(i + shift) % 8]);
                 dispatch!(level, simd => compare(simd, &other));
             }
         }
-        assert_ne!(crate::levels().len(), 0);
-        let _: Level = crate::levels()[0];
     }
 }

@@ -43,8 +43,8 @@ mod lanes;
 mod moving;
 mod node;
 mod packet;
-mod ray_lanes;
 mod pages;
+mod ray_lanes;
 mod single;
 mod slabs;
 mod stack;
@@ -57,7 +57,9 @@ pub use packet::PACKET;
 pub use triangle::intersect_triangle;
 pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
 
-use fearless_simd::Level;
+/// A kind of vector unit, known to be there.
+pub use fearless_simd::Level as SimdLevel;
+
 use juggler_math::{Aabb, Ray};
 use moving::Motion;
 use node::Node;
@@ -75,20 +77,21 @@ pub struct Bvh {
     bounds: Aabb,
     stats: BuildStats,
     /// The vector unit that the kernels use.
-    level: Level,
+    level: SimdLevel,
 }
 
-/// Every kind of vector unit that this machine has and the kernels are made for, the best last.
-pub(crate) fn levels() -> Vec<Level> {
-    let best = Level::new();
+/// Every kind of vector unit that this machine has and the kernels are made for, the best last. All give the same
+/// bits.
+pub fn simd_levels() -> Vec<SimdLevel> {
+    let best = SimdLevel::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     let lesser = [
-        best.as_sse2().map(Level::Sse2),
-        best.as_sse4_2().map(Level::Sse4_2),
-        best.as_avx2().map(Level::Avx2),
+        best.as_sse2().map(SimdLevel::Sse2),
+        best.as_sse4_2().map(SimdLevel::Sse4_2),
+        best.as_avx2().map(SimdLevel::Avx2),
     ];
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    let lesser = [Some(Level::baseline())];
+    let lesser = [Some(SimdLevel::baseline())];
     lesser.into_iter().flatten().chain([best]).collect()
 }
 
@@ -120,9 +123,6 @@ pub trait Leaf {
         found
     }
 
-    /// Brings what [`Leaf::closest`] and [`Leaf::any`] will look at closer, where the implementor can.
-    fn prefetch(&self, _items: Range<u32>) {}
-
     /// Whether one of the items is hit between `ray.t_min` and `ray.t_max`.
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool;
 }
@@ -137,6 +137,12 @@ impl Bvh {
     /// The box of everything in the tree; empty when nothing is.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// The same tree for another vector unit than the best of this machine: for tests and measurements.
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.level = level;
+        self
     }
 
     /// What the build made.

@@ -152,9 +152,9 @@ mod tests {
         let mut node = Node::EMPTY;
         node.add([-1.0; 3], [1.0; 3], Child::leaf(0, 1));
         for direction in [Vec3::X, -Vec3::X, Vec3::new(-0.0, 1.0, 0.0), Vec3::ONE, Vec3::new(1e-40, 1.0, 0.0)] {
-            let slabs = Slabs::of_ray(&Ray::new(Vec3::ZERO, direction));
-            for level in crate::levels() {
-                let mask = dispatch!(level, simd => node.test(simd, &slabs).0);
+            for level in crate::simd_levels() {
+                let ray = Ray::new(Vec3::ZERO, direction);
+                let mask = dispatch!(level, simd => node.test(simd, &Slabs::of_ray(simd, &ray)).0);
                 assert_eq!(mask, 1, "{direction} {level:?}");
             }
         }

@@ -8,8 +8,8 @@
 use crate::lanes::{Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
-use crate::slabs::{Bundle, Extent, Slabs};
 use crate::single::nearest;
+use crate::slabs::{Bundle, Extent, Slabs};
 use crate::stack::{Stack, distance};
 use crate::{Bvh, Leaf};
 use fearless_simd::dispatch;

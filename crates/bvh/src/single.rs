@@ -1,6 +1,6 @@
 //! One ray at a time: nearest child first for the closest hit, any order for any hit.
 
-use crate::lanes::{Bits, Lanes, prefetch};
+use crate::lanes::Lanes;
 use crate::node::{Child, Node};
 use crate::slabs::{Slabs, cull_distance};
 use crate::stack::{Stack, distance, entry};
@@ -85,21 +85,6 @@ impl Bvh {
             slabs.t_max = cull_distance(ray.t_max);
             let Some(next) = next_below(stack, base, slabs.t_max) else { return };
             current = next;
-        }
-    }
-
-    /// Where several children are met, all are fetched: the nearest is needed next, the others soon.
-    #[inline(always)]
-    fn prefetch(&self, node: &Node, mask: u32, leaf: &impl Leaf) {
-        let mut more = mask & mask.wrapping_sub(1);
-        while more != 0 {
-            let child = node.children[more.trailing_zeros() as usize & 7];
-            more &= more - 1;
-            if child.is_leaf() {
-                leaf.prefetch(child.items());
-            } else {
-                prefetch(&self.nodes, child.0 as usize);
-            }
         }
     }
 

@@ -17,9 +17,9 @@
 //! Packets", 2006). Rounding is monotonic, so the interval's result bounds that of each ray exactly.
 
 use crate::lanes::Lanes;
+use crate::node::WIDTH;
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
-use crate::node::WIDTH;
 use juggler_math::{Ray, Vec3};
 
 pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;

@@ -6,7 +6,7 @@
 use arrayvec::ArrayVec;
 
 /// 72 levels of 7 waiting children.
-const SIZE: usize = 512;
+pub(crate) const SIZE: usize = 512;
 
 /// Pending work, nearest on top.
 pub(crate) struct Stack(ArrayVec<u64, SIZE>);

@@ -70,7 +70,7 @@ fn check(name: &str, bvh: &Bvh, boxes: &[Aabb]) {
     let mut nodes = vec![0; bvh.nodes.len()];
     let stack = check_node(bvh, boxes, Child::ROOT, &mut seen, &mut nodes, 1);
     assert!(stack <= bvh.stats.stack, "{name}");
-    assert!(bvh.stats.stack <= crate::stack::LARGE && bvh.stats.depth <= 72, "{name}: {:?}", bvh.stats);
+    assert!(bvh.stats.stack <= crate::stack::SIZE && bvh.stats.depth <= 72, "{name}: {:?}", bvh.stats);
     assert!(seen.iter().all(|&times| times == 1) && nodes.iter().all(|&times| times == 1), "{name}");
     let mut order = bvh.order.clone();
     order.sort_unstable();

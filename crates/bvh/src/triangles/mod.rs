@@ -8,8 +8,8 @@ mod one;
 
 use crate::lanes::{Lanes, bits};
 use crate::node::Child;
-use crate::pages::Pages;
 use crate::packet::{GROUP, Group};
+use crate::pages::Pages;
 use crate::slabs::{Bundle, Slabs};
 use crate::stack::Stack;
 use crate::triangle::Shear;
@@ -22,7 +22,6 @@ use many::Many;
 use meet::Corner;
 use one::One;
 use std::fmt;
-use std::ops::Range;
 
 const LANES: usize = 8;
 /// Trees of up to as many bytes stay near enough (measured).
@@ -207,6 +206,12 @@ impl TriangleBvh {
     /// Whether rays wait for memory so long that several under way at once pay.
     fn is_beyond_cache(&self) -> bool {
         self.bytes() > IN_CACHE
+    }
+
+    /// [`Bvh::with_simd_level`].
+    pub fn with_simd_level(mut self, level: crate::SimdLevel) -> Self {
+        self.bvh = self.bvh.with_simd_level(level);
+        self
     }
 
     /// What the search for the closest hit looks at.

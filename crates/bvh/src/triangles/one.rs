@@ -49,11 +49,6 @@ impl<S: Lanes> Leaf for One<'_, S> {
     }
 
     #[inline(always)]
-    fn prefetch(&self, items: Range<u32>) {
-        crate::lanes::prefetch(self.blocks, items.start as usize);
-    }
-
-    #[inline(always)]
     fn any(&mut self, _lane: usize, ray: &Ray, items: Range<u32>) -> bool {
         let block = &self.blocks[items.start as usize];
         for lane in Bits(self.candidates(ray, block, items.len())) {
