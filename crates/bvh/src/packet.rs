@@ -191,7 +191,7 @@ impl Bvh {
                 for (lane, ray) in rays.iter_mut().enumerate() {
                     if active >> lane & 1 != 0 {
                         let slabs = Slabs::of_ray(simd, ray);
-                        self.closest_below(simd, from, stack, base + lane, ray, slabs, leaf);
+                        self.closest_below(simd, from, stack, (base + lane, ray), slabs, leaf);
                     }
                 }
             },
@@ -266,7 +266,7 @@ impl Bvh {
                 for (lane, ray) in rays.iter().enumerate() {
                     if active >> lane & 1 != 0 {
                         let slabs = Slabs::of_ray(simd, ray);
-                        let hit = self.any_below(simd, from, stack, base + lane, ray, &slabs, leaf);
+                        let hit = self.any_below(simd, from, stack, (base + lane, ray), &slabs, leaf);
                         found |= u32::from(hit) << lane;
                     }
                 }

@@ -85,9 +85,9 @@ impl RayLanes {
         let slot = slot & (WIDTH - 1);
         let mut enter = simd.load(&self.t_min);
         let mut leave = simd.splat(f32::MAX);
-        for axis in 0..3 {
+        for (axis, planes) in bounds.iter().enumerate() {
             let side = (self.signs >> axis) as usize & 1;
-            let (near, far) = (bounds[axis][side][slot], bounds[axis][side ^ 1][slot]);
+            let (near, far) = (planes[side][slot], planes[side ^ 1][slot]);
             let (origin, inverse) = (simd.load(&self.origin[axis]), simd.load(&self.inverse[axis]));
             // In this order, so that a NaN leaves the range as it is.
             enter = simd.most((simd.splat(near) - origin) * inverse, enter);

@@ -36,7 +36,8 @@ impl Bvh {
     fn closest_each<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
         let mut stack = Stack::new();
         for (lane, ray) in rays.iter_mut().enumerate() {
-            self.closest_below(simd, Child::ROOT, &mut stack, lane, ray, Slabs::of_ray(simd, ray), leaf);
+            let slabs = Slabs::of_ray(simd, ray);
+            self.closest_below(simd, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
         }
     }
 
@@ -44,7 +45,8 @@ impl Bvh {
     fn any_each<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
         let mut stack = Stack::new();
         for (lane, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-            *occluded = self.any_below(simd, Child::ROOT, &mut stack, lane, ray, &Slabs::of_ray(simd, ray), leaf);
+            let slabs = Slabs::of_ray(simd, ray);
+            *occluded = self.any_below(simd, Child::ROOT, &mut stack, (lane, ray), &slabs, leaf);
         }
     }
 
@@ -55,8 +57,7 @@ impl Bvh {
         simd: S,
         from: Child,
         stack: &mut Stack,
-        lane: usize,
-        ray: &mut Ray,
+        (lane, ray): (usize, &mut Ray),
         mut slabs: Slabs,
         leaf: &mut impl Leaf,
     ) {
@@ -95,8 +96,7 @@ impl Bvh {
         simd: S,
         from: Child,
         stack: &mut Stack,
-        lane: usize,
-        ray: &Ray,
+        (lane, ray): (usize, &Ray),
         slabs: &Slabs,
         leaf: &mut impl Leaf,
     ) -> bool {

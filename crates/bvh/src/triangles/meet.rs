@@ -81,7 +81,7 @@ pub(super) fn settle<S: Lanes>([a, b, c]: [Corner<S>; 3]) -> [[f32; 8]; 3] {
         let determinant = e + f + g;
         let misses = (e < 0.0) | (f < 0.0) | (g < 0.0);
         let outside = misses & ((e > 0.0) | (f > 0.0) | (g > 0.0));
-        let flat = (determinant == 0.0) | !(determinant.abs() < f64::INFINITY);
+        let flat = (determinant == 0.0) | !determinant.is_finite();
         let inverse = 1.0 / determinant;
         let (e, f, g) = (e * inverse, f * inverse, g * inverse);
         let distance = (e * az + f * bz + g * cz) as f32;

@@ -118,7 +118,7 @@ impl TriangleBvh {
     fn closest_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> Option<TriangleHit> {
         let slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, &self.blocks, ray, &slabs);
-        self.bvh.closest_below(simd, Child::ROOT, stack, 0, &mut { *ray }, slabs, &mut one);
+        self.bvh.closest_below(simd, Child::ROOT, stack, (0, &mut { *ray }), slabs, &mut one);
         one.hit
     }
 
@@ -126,7 +126,7 @@ impl TriangleBvh {
     fn any_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> bool {
         let slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, &self.blocks, ray, &slabs);
-        self.bvh.any_below(simd, Child::ROOT, stack, 0, ray, &slabs, &mut one)
+        self.bvh.any_below(simd, Child::ROOT, stack, (0, ray), &slabs, &mut one)
     }
 
     /// [`TriangleBvh::closest`] for coherent rays, see [`Bvh::closest_packet`]. The answers replace what
