@@ -3,9 +3,10 @@
 use super::super::error::{Fault, Place};
 use super::super::text::{self, Scanner};
 use super::body::Values;
-use super::header::Scalar;
+use super::header::{Element, Scalar};
 
 /// A text after its header.
+#[derive(Clone)]
 pub(super) struct AsciiValues<'a>(Scanner<'a>);
 
 impl<'a> AsciiValues<'a> {
@@ -62,6 +63,14 @@ impl Values for AsciiValues<'_> {
             if self.0.word().is_none() {
                 return Err(self.0.expected("one more value, as the header says", None));
             }
+        }
+        Ok(())
+    }
+
+    fn pass_rows(&mut self, _element: &Element, count: u64) -> Result<(), Fault> {
+        for _ in 0..count {
+            self.begin_row()?;
+            self.0.next_line();
         }
         Ok(())
     }

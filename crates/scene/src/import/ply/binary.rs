@@ -2,10 +2,11 @@
 
 use super::super::error::{Fault, Place};
 use super::super::text::whole;
-use super::body::Values;
-use super::header::{ByteOrder, Scalar};
+use super::body::{Values, skip};
+use super::header::{ByteOrder, Element, Scalar};
 
 /// The bytes after a header.
+#[derive(Clone)]
 pub(super) struct BinaryValues<'a> {
     rest: &'a [u8],
     size: usize,
@@ -75,6 +76,17 @@ impl Values for BinaryValues<'_> {
         let length = count.saturating_mul(kind.size());
         let rest = usize::try_from(length).ok().and_then(|length| self.rest.get(length..));
         self.rest = rest.ok_or_else(|| self.too_short(length))?;
+        Ok(())
+    }
+
+    fn pass_rows(&mut self, element: &Element, count: u64) -> Result<(), Fault> {
+        if element.properties.iter().all(|property| property.length.is_none()) {
+            let row = element.properties.iter().map(|property| property.item.size()).sum::<u64>();
+            return self.skip(Scalar::U8, row.saturating_mul(count));
+        }
+        for _ in 0..count {
+            element.properties.iter().try_for_each(|property| skip(property, self))?;
+        }
         Ok(())
     }
 
