@@ -144,11 +144,13 @@ mod tests {
         std::fs::write(folder.path().join("b.obj"), TRIANGLE).unwrap();
         let names = ["b.obj", "sub/../b.obj"].map(|name| folder.path().join(name));
         let found: Vec<Arc<Entry>> = std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..8).map(|i| {
-                let name = &names[i % 2];
-                let library = &library;
-                scope.spawn(move || library.get(name))
-            }).collect();
+            let threads: Vec<_> = (0..8)
+                .map(|i| {
+                    let name = &names[i % 2];
+                    let library = &library;
+                    scope.spawn(move || library.get(name))
+                })
+                .collect();
             threads.into_iter().map(|thread| thread.join().unwrap()).collect()
         });
         let data = |entry: &Entry| std::ptr::from_ref(entry.mesh.as_ref().unwrap().0.data().unwrap());
@@ -163,7 +165,13 @@ mod tests {
         let library = Library::default();
         let broken = library.get(&file);
         assert_eq!(broken.digest, *blake3::hash(b"v 0 0\n").as_bytes());
-        assert!(broken.mesh.as_ref().unwrap_err().ends_with("a.obj`: line 1: expected a number for z, found the end of the line"));
+        assert!(
+            broken
+                .mesh
+                .as_ref()
+                .unwrap_err()
+                .ends_with("a.obj`: line 1: expected a number for z, found the end of the line")
+        );
         assert_eq!(library.digest(&folder.path().join("none.obj")), [0; 32]);
         assert_eq!(library.digest(folder.path()), [0; 32]);
     }

@@ -6,10 +6,10 @@ use memchr::{memchr2, memchr2_iter};
 use rayon::prelude::*;
 
 /// Bytes of a piece, about.
-pub(super) const PIECE: usize = 1 << 20;
+pub(super) const PIECE: usize = 1 << 22;
 
-/// Pieces that are read before the first of them is taken over: little is held twice.
-const BATCH: usize = 32;
+/// Pieces a thread that are read before the first of them is taken over: little is held twice.
+const BATCH: usize = 4;
 
 /// Reads the pieces and takes over the results in their order, up to the first fault.
 pub(super) fn read_pieces<P: Sync, R: Send>(
@@ -17,7 +17,7 @@ pub(super) fn read_pieces<P: Sync, R: Send>(
     read: impl Fn(&P) -> Result<R, Fault> + Sync,
     mut take: impl FnMut(R) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
-    for batch in pieces.chunks(BATCH) {
+    for batch in pieces.chunks(BATCH * rayon::current_num_threads()) {
         let found: Vec<Result<R, Fault>> = batch.par_iter().map(&read).collect();
         found.into_iter().try_for_each(|piece| take(piece?))?;
     }

@@ -49,13 +49,23 @@ impl Values for AsciiValues<'_> {
         self.double(what).map(|value| value as f32)
     }
 
-    fn integer(&mut self, kind: Scalar, what: &str) -> Result<i64, Fault> {
-        if matches!(kind, Scalar::F32 | Scalar::F64) {
-            let value = self.double(what)?;
-            return text::whole(value, self.place(), what);
+    fn integers(
+        &mut self,
+        kind: Scalar,
+        count: u64,
+        what: &str,
+        mut take: impl FnMut(Place, i64) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        for _ in 0..count {
+            let value = if matches!(kind, Scalar::F32 | Scalar::F64) {
+                text::whole(self.double(what)?, self.place(), what)?
+            } else {
+                let word = self.0.word();
+                word.and_then(text::integer).ok_or_else(|| self.0.expected(what, word))?
+            };
+            take(self.place(), value)?;
         }
-        let word = self.0.word();
-        word.and_then(text::integer).ok_or_else(|| self.0.expected(what, word))
+        Ok(())
     }
 
     fn skip(&mut self, _kind: Scalar, count: u64) -> Result<(), Fault> {

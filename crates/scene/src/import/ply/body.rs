@@ -18,8 +18,14 @@ pub(super) trait Values: Clone + Sync {
     fn end_row(&mut self) -> Result<(), Fault>;
     /// The next value, rounded once.
     fn real(&mut self, kind: Scalar, what: &str) -> Result<f32, Fault>;
-    /// The next value, which must be a whole number.
-    fn integer(&mut self, kind: Scalar, what: &str) -> Result<i64, Fault>;
+    /// The next values, which must be whole numbers, each with its place.
+    fn integers(
+        &mut self,
+        kind: Scalar,
+        count: u64,
+        what: &str,
+        take: impl FnMut(Place, i64) -> Result<(), Fault>,
+    ) -> Result<(), Fault>;
     /// Passes over values.
     fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), Fault>;
     /// Passes over rows of an element without a look at more than it takes to find their end.
@@ -50,7 +56,8 @@ pub(super) struct Body<'h> {
 impl<'h> Body<'h> {
     /// To be read in pieces of about this many bytes.
     pub fn new(header: &'h Header, limits: &'h Limits, piece: usize) -> Self {
-        const ROW: u64 = 16;
+        // Rows have some sixteen bytes; pieces whose results stay in the cache are faster than large ones.
+        const ROW: u64 = 256;
         Self { header, limits, rows: (piece as u64 / ROW).max(1) }
     }
 
@@ -145,7 +152,7 @@ fn read_piece(
     limits: &Limits,
 ) -> Result<Faces, Fault> {
     let values = &mut rows.values;
-    let mut faces = Faces::default();
+    let mut faces = Faces::with_capacity(usize::try_from(rows.count).unwrap_or(0));
     let mut corners = Vec::new();
     for _ in 0..rows.count {
         values.begin_row()?;
@@ -169,21 +176,24 @@ fn read_corners(
     corners: &mut Vec<u32>,
 ) -> Result<(), Fault> {
     corners.clear();
-    for _ in 0..list_length(values, length)? {
-        let place = values.place();
-        let index = values.integer(item, "a vertex index")?;
-        match u32::try_from(index) {
-            Ok(corner) if u64::from(corner) < vertices => corners.push(corner),
-            _ => return Err(place.fault(format!("vertex index {index}: there are {vertices} vertices, from 0"))),
+    let count = list_length(values, length)?;
+    values.integers(item, count, "a vertex index", |place, index| match u32::try_from(index) {
+        Ok(corner) if u64::from(corner) < vertices => {
+            corners.push(corner);
+            Ok(())
         }
-    }
-    Ok(())
+        _ => Err(place.fault(format!("vertex index {index}: there are {vertices} vertices, from 0"))),
+    })
 }
 
 fn list_length(values: &mut impl Values, kind: Scalar) -> Result<u64, Fault> {
-    let place = values.place();
-    let length = values.integer(kind, "the length of a list")?;
-    u64::try_from(length).map_err(|_| place.fault(format!("expected the length of a list, found {length}")))
+    let mut length = 0;
+    values.integers(kind, 1, "the length of a list", |place, found| {
+        length =
+            u64::try_from(found).map_err(|_| place.fault(format!("expected the length of a list, found {found}")))?;
+        Ok(())
+    })?;
+    Ok(length)
 }
 
 /// Passes over one value or list.

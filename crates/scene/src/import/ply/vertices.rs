@@ -57,10 +57,7 @@ pub(super) fn read_vertices(
     let columns = Columns::of(element)?;
     note_ignored(element, |index| columns.slots.get(index).is_some_and(Option::is_some), &mut parts.warnings);
     body.limits.check_vertices(element.count)?;
-    let count = usize::try_from(element.count).unwrap_or(0);
-    parts.positions.reserve_exact(count);
-    parts.normals.reserve_exact(if columns.normals { count } else { 0 });
-    parts.uvs.reserve_exact(if columns.uvs { count } else { 0 });
+    reserve(parts, &columns, element.count);
     body.read_rows(
         element,
         values,
@@ -74,8 +71,16 @@ pub(super) fn read_vertices(
     )
 }
 
+fn reserve(parts: &mut Parts, columns: &Columns, count: u64) {
+    let count = usize::try_from(count).unwrap_or(0);
+    parts.positions.reserve_exact(count);
+    parts.normals.reserve_exact(if columns.normals { count } else { 0 });
+    parts.uvs.reserve_exact(if columns.uvs { count } else { 0 });
+}
+
 fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>) -> Result<Parts, Fault> {
     let mut parts = Parts::default();
+    reserve(&mut parts, columns, rows.count);
     for _ in 0..rows.count {
         let [x, y, z, nx, ny, nz, u, v] = read_row(element, columns, &mut rows.values)?;
         parts.positions.push(vec3(x, y, z));
