@@ -40,7 +40,7 @@ impl Faces {
     }
 
     /// Adds the faces of the next piece of the file, whose corners count from `first`.
-    pub fn append(&mut self, piece: Self, first: u32, limits: &Limits) -> Result<(), Fault> {
+    pub fn append(&mut self, piece: &Self, first: u32, limits: &Limits) -> Result<(), Fault> {
         let start = self.triangles.len();
         limits.check_triangles(start.saturating_add(piece.triangles.len()))?;
         self.triangles.extend(piece.triangles.iter().map(|corners| corners.map(|corner| corner + first)));

@@ -22,7 +22,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Has the first line count as this one.
-    pub fn from_line(self, line: u64) -> Self {
+    pub fn starting_at_line(self, line: u64) -> Self {
         Self { line, ..self }
     }
 

@@ -81,7 +81,7 @@ impl Welded {
         };
         self.keys.extend(piece.corners.keys);
         self.pieces += 1;
-        self.faces.append(piece.faces, first, limits)
+        self.faces.append(&piece.faces, first, limits)
     }
 
     /// The different keys in the order of their first corner, and the faces.

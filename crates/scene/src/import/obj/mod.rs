@@ -72,7 +72,7 @@ impl Start {
     /// Counts in a piece of text: what must be added for the piece after it.
     fn of_next(text: &[u8]) -> Self {
         let mut found = Self::default();
-        let mut scanner = Scanner::wavefront(text).from_line(0);
+        let mut scanner = Scanner::wavefront(text).starting_at_line(0);
         loop {
             match scanner.word() {
                 Some(b"v") => found.counts[0] += 1,
@@ -96,7 +96,7 @@ impl Start {
 }
 
 fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<Reader, Fault> {
-    let mut scanner = Scanner::wavefront(text).from_line(start.line);
+    let mut scanner = Scanner::wavefront(text).starting_at_line(start.line);
     let mut reader = Reader { start: start.counts, ..Reader::default() };
     loop {
         reader.statement(&mut scanner, limits)?;

@@ -115,7 +115,7 @@ impl<'h> Body<'h> {
             element,
             values,
             |rows| read_piece(element, column, rows, vertices, self.limits),
-            |piece| faces.append(piece, 0, self.limits),
+            |piece| faces.append(&piece, 0, self.limits),
         )?;
         parts.faces = faces;
         Ok(())
