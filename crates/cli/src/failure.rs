@@ -2,6 +2,7 @@
 
 use juggler::Error;
 use juggler::imaging::ImageError;
+use juggler::scene::import::{Fault, ImportError};
 use juggler::scene::{Problems, SceneError};
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -55,6 +56,15 @@ impl Failure {
 impl From<Failure> for ExitCode {
     fn from(failure: Failure) -> Self {
         Self::from(failure.status())
+    }
+}
+
+impl From<ImportError> for Failure {
+    fn from(error: ImportError) -> Self {
+        match &error.fault {
+            Fault::Read(cause) => Self::file("read", error.path.display(), cause),
+            fault => Self::Wrong(format!("cannot read `{}`: {fault}", error.path.display())),
+        }
     }
 }
 

@@ -10,7 +10,6 @@ use crate::description::{Description, Object};
 use crate::path::Path;
 use juggler_tracer::shape::AnyShape;
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::path::PathBuf;
 
 /// Changes when the same description comes to mean another picture.
@@ -31,17 +30,9 @@ pub fn of(scene: &Description, files: &Files<'_>) -> String {
         hasher.update(error.to_string().as_bytes());
     }
     for file in mesh_files(scene, files) {
-        hasher.update(&content(&file));
+        hasher.update(&files.library.digest(&file));
     }
     hasher.finalize().to_hex().to_string()
-}
-
-/// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
-fn content(file: &std::path::Path) -> [u8; 32] {
-    let ordinary = std::fs::metadata(file).is_ok_and(|metadata| metadata.is_file());
-    let mut hasher = blake3::Hasher::new();
-    let read = ordinary && File::open(file).is_ok_and(|file| hasher.update_reader(file).is_ok());
-    if read { *hasher.finalize().as_bytes() } else { [0; 32] }
 }
 
 fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {

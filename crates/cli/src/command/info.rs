@@ -1,4 +1,6 @@
-//! `juggler info`: what is in a scene, and what a picture says about itself.
+//! `juggler info`: what is in a scene or a mesh, and what a picture says about itself.
+
+mod mesh;
 
 use crate::console;
 use crate::failure::Failure;
@@ -7,7 +9,7 @@ use crate::source;
 use clap::Args;
 use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
-use juggler::scene::{Compiled, Scene};
+use juggler::scene::{Compiled, Scene, import};
 use serde_json::{Map, Value, json};
 use std::fs::File;
 use std::io::Read;
@@ -16,7 +18,7 @@ use std::path::Path;
 /// Flags of `juggler info`.
 #[derive(Debug, Args)]
 pub struct Info {
-    /// A scene file, the name of a built-in scene, `-` for standard input, or a picture
+    /// A scene file, the name of a built-in scene, `-` for standard input, a mesh (PLY, OBJ, STL), or a picture
     scene: String,
     /// As one JSON object
     #[arg(long)]
@@ -24,8 +26,12 @@ pub struct Info {
 }
 
 impl Info {
-    /// Prints what a picture says, or builds the world and prints what is in it.
+    /// Prints what a picture says, or builds the world or mesh and prints what is in it.
     pub fn run(self) -> Result<(), Failure> {
+        let path = Path::new(&self.scene);
+        if import::is_mesh_name(path) && path.exists() {
+            return console::print(&mesh::Report::of(&self.scene)?.text(self.json));
+        }
         if let Some(format) = picture_format(Path::new(&self.scene)) {
             return self.picture(format);
         }
@@ -87,10 +93,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("textures", description.textures.len().to_string());
     row("cameras", cameras.join(", "));
     row("bounds", bounds_in_words(&compiled.world.bounds()));
-    row(
-        "memory",
-        format!("{} shapes, {} tree", bytes(geometry.geometry_bytes as u64), bytes(geometry.bvh_bytes as u64)),
-    );
+    row("memory", memory_in_words(geometry.geometry_bytes, geometry.bvh_bytes));
     let animation = &description.animation;
     row("animation", length(animation.frames, animation.frames_per_second));
     lines.join("\n")
@@ -103,6 +106,10 @@ fn length(frames: u32, frames_per_second: f64) -> String {
     }
     let seconds = (f64::from(frames) / frames_per_second * 1000.0).round() / 1000.0;
     format!("{}, {seconds} s", counted(frames.into(), "frame"))
+}
+
+fn memory_in_words(geometry: usize, bvh: usize) -> String {
+    format!("{} shapes, {} tree", bytes(geometry as u64), bytes(bvh as u64))
 }
 
 fn bounds_in_words(bounds: &Aabb) -> String {

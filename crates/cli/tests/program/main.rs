@@ -5,6 +5,7 @@
 mod answers;
 mod errors;
 mod harness;
+mod meshes;
 mod pictures;
 mod signals;
 mod statistics;

@@ -1,47 +1,75 @@
 //! Mesh files: each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
 
 use crate::document::{Node, Sources};
-use crate::import::{Fault, ImportError, Imported, Limits, load};
+use crate::import::{Fault, ImportError, Limits, parse, read};
 use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
 use juggler_tracer::shape::{Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The meshes that were loaded so far.
 #[derive(Clone, Debug, Default)]
 pub struct Library {
-    entries: Arc<Mutex<BTreeMap<PathBuf, Entry>>>,
+    entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
 }
 
-/// A mesh ready to be placed, with all that is odd about it; or why there is none.
-type Entry = Result<(Mesh, Vec<String>), String>;
+/// A mesh file.
+#[derive(Debug)]
+struct Entry {
+    /// The hash of its content; zeros when it could not be read.
+    digest: [u8; 32],
+    /// A mesh ready to be placed, with all that is odd about it; or why there is none.
+    mesh: Result<(Mesh, Vec<String>), String>,
+}
 
 impl Library {
-    fn get(&self, path: &std::path::Path) -> Entry {
-        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        entries.entry(path.to_path_buf()).or_insert_with(|| read(path)).clone()
+    /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
+    pub fn digest(&self, path: &std::path::Path) -> [u8; 32] {
+        self.get(path).digest
+    }
+
+    /// Files are loaded without the lock, which threads of one pool must not wait for in the midst of their work:
+    /// of two threads that load the same file, both take the mesh of the first.
+    fn get(&self, path: &std::path::Path) -> Arc<Entry> {
+        if let Some(known) = self.entries().get(path) {
+            return Arc::clone(known);
+        }
+        // The same file by another name.
+        let file = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let known = self.entries().get(&file).filter(|entry| entry.mesh.is_ok()).map(Arc::clone);
+        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path)));
+        let mut entries = self.entries();
+        let first = Arc::clone(entries.entry(file).or_insert(entry));
+        Arc::clone(entries.entry(path.to_path_buf()).or_insert(first))
+    }
+
+    fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<Entry>>> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-fn read(path: &std::path::Path) -> Entry {
-    let Imported { mesh, mut warnings } = import(path).map_err(|error| explain(&error))?;
-    let mut shape = Mesh::from(mesh);
-    shape.prepare().map_err(|invalid| format!("`{}` holds a mesh that cannot be: {invalid}", path.display()))?;
-    warnings.extend(shape.warnings());
-    Ok((shape, warnings))
-}
-
-/// Loads an ordinary file: what waits for another program could wait forever.
-fn import(path: &std::path::Path) -> Result<Imported, ImportError> {
-    let refuse = |fault| ImportError { path: path.to_owned(), fault };
-    let metadata = std::fs::metadata(path).map_err(|error| refuse(Fault::Read(error)))?;
-    if !metadata.is_file() {
-        let kind = if metadata.is_dir() { std::io::ErrorKind::IsADirectory } else { std::io::ErrorKind::Unsupported };
-        return Err(refuse(Fault::Read(kind.into())));
+impl Entry {
+    fn load(path: &std::path::Path) -> Self {
+        let limits = Limits::default();
+        let bytes = match read(path, &limits) {
+            Ok(bytes) => bytes,
+            Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)) },
+        };
+        let (digest, imported) = rayon::join(|| blake3::hash(&bytes).into(), || parse(path, &bytes, &limits));
+        // Building the hierarchy takes memory of its own.
+        drop(bytes);
+        let mesh = imported.map_err(|error| explain(&error)).and_then(|found| {
+            let mut shape = Mesh::from(found.mesh);
+            let invalid = |invalid| format!("`{}` holds a mesh that cannot be: {invalid}", path.display());
+            shape.prepare().map_err(invalid)?;
+            let mut warnings = found.warnings;
+            warnings.extend(shape.warnings());
+            Ok((shape, warnings))
+        });
+        Self { digest, mesh }
     }
-    load(path, &Limits::default())
 }
 
 fn explain(error: &ImportError) -> String {
@@ -80,15 +108,71 @@ impl Files<'_> {
             findings.push(Finding::error(invalid.message).at(&path));
             return None;
         }
-        match self.library.get(&self.locate(&path, file)) {
+        match &self.library.get(&self.locate(&path, file)).mesh {
             Ok((mesh, warnings)) => {
-                findings.extend(warnings.into_iter().map(|warning| Finding::warning(warning).at(&path)));
-                Some(mesh)
+                findings.extend(warnings.iter().map(|warning| Finding::warning(warning.clone()).at(&path)));
+                Some(mesh.clone())
             }
             Err(message) => {
-                findings.push(Finding::error(message).at(&path));
+                findings.push(Finding::error(message.clone()).at(&path));
                 None
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+    #[test]
+    fn a_file_is_loaded_once_under_all_its_names_and_by_all_threads() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
+        let file = folder.path().join("a.obj");
+        std::fs::write(&file, TRIANGLE).unwrap();
+        let library = Library::default();
+        let first = library.get(&file);
+        assert_eq!(first.digest, *blake3::hash(TRIANGLE.as_bytes()).as_bytes());
+        // What is loaded is not looked at again.
+        std::fs::write(&file, "v 0 0 0\n").unwrap();
+        for name in [file.clone(), folder.path().join("sub/../a.obj"), folder.path().join("./a.obj")] {
+            assert!(Arc::ptr_eq(&library.clone().get(&name), &first), "{}", name.display());
+        }
+        std::fs::write(folder.path().join("b.obj"), TRIANGLE).unwrap();
+        let names = ["b.obj", "sub/../b.obj"].map(|name| folder.path().join(name));
+        let found: Vec<Arc<Entry>> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..8)
+                .map(|i| {
+                    let name = &names[i % 2];
+                    let library = &library;
+                    scope.spawn(move || library.get(name))
+                })
+                .collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        let data = |entry: &Entry| std::ptr::from_ref(entry.mesh.as_ref().unwrap().0.data().unwrap());
+        assert!(found.iter().all(|entry| data(entry) == data(&found[0])));
+    }
+
+    #[test]
+    fn a_broken_file_has_a_hash_and_a_missing_one_has_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.obj");
+        std::fs::write(&file, "v 0 0\n").unwrap();
+        let library = Library::default();
+        let broken = library.get(&file);
+        assert_eq!(broken.digest, *blake3::hash(b"v 0 0\n").as_bytes());
+        assert!(
+            broken
+                .mesh
+                .as_ref()
+                .unwrap_err()
+                .ends_with("a.obj`: line 1: expected a number for z, found the end of the line")
+        );
+        assert_eq!(library.digest(&folder.path().join("none.obj")), [0; 32]);
+        assert_eq!(library.digest(folder.path()), [0; 32]);
     }
 }

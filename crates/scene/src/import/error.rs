@@ -74,6 +74,16 @@ impl Place {
     }
 }
 
+impl Fault {
+    /// The same fault in a text with this many more lines before it.
+    pub(super) fn further_down(mut self, lines: u64) -> Self {
+        if let Self::Malformed { place: Place::Line(line), .. } = &mut self {
+            *line += lines;
+        }
+        self
+    }
+}
+
 /// A piece of a file as it may stand in a message: printable, short, in quotes.
 pub(super) fn quote(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;

@@ -6,12 +6,14 @@
 use super::Limits;
 use super::error::Fault;
 use juggler_math::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Corner tests that all concave polygons of a file may take together: about a second of work, enough for
 /// a hundred thousand outlines of fifty corners. What comes after is left as fans, and counted.
 const EAR_TESTS: u64 = 1 << 28;
 
-/// The faces of a mesh, in the order of the file.
+/// The faces of a mesh or of a piece of one, in the order of the file.
 #[derive(Default)]
 pub(super) struct Faces {
     triangles: Vec<[u32; 3]>,
@@ -25,10 +27,31 @@ struct Polygon {
     count: usize,
 }
 
+impl Polygon {
+    fn range(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+}
+
 impl Faces {
     /// Room for this many triangles.
     pub fn with_capacity(triangles: usize) -> Self {
         Self { triangles: Vec::with_capacity(triangles), ..Self::default() }
+    }
+
+    /// Adds the faces of the next piece of the file, whose corners count from `first`.
+    pub fn append(&mut self, piece: &Self, first: u32, limits: &Limits) -> Result<(), Fault> {
+        let start = self.triangles.len();
+        limits.check_triangles(start.saturating_add(piece.triangles.len()))?;
+        self.triangles.extend(piece.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        self.polygons.extend(piece.polygons.iter().map(|polygon| Polygon { first: start + polygon.first, ..*polygon }));
+        self.skipped += piece.skipped;
+        Ok(())
+    }
+
+    /// Gives every corner another number.
+    pub fn renumber(&mut self, number: impl Fn(u32) -> u32 + Sync) {
+        self.triangles.par_iter_mut().for_each(|corners| *corners = corners.map(&number));
     }
 
     /// Adds a triangle.
@@ -64,10 +87,13 @@ impl Faces {
         if self.skipped > 0 {
             warnings.push(format!("{} faces with fewer than 3 corners left out", self.skipped));
         }
+        let fan_of = |polygon: &Polygon| self.triangles.get(polygon.range());
+        let is_concave = |polygon: &&Polygon| fan_of(polygon).is_some_and(|fan| !is_convex(&outline(fan, positions)));
+        let concave: Vec<&Polygon> = self.polygons.par_iter().filter(is_concave).collect();
         let mut tests = EAR_TESTS;
         let mut fans = 0_u64;
-        for polygon in &self.polygons {
-            let Some(fan) = self.triangles.get_mut(polygon.first..polygon.first + polygon.count) else { continue };
+        for polygon in concave {
+            let Some(fan) = self.triangles.get_mut(polygon.range()) else { continue };
             if !cut(fan, positions, &mut tests) {
                 fans += 1;
             }
@@ -79,17 +105,21 @@ impl Faces {
     }
 }
 
-/// Cuts the polygon that this fan describes; `false` when it is concave and no tests are left.
+/// The corners of the polygon that this fan describes.
+fn corners(fan: &[[u32; 3]]) -> impl Iterator<Item = u32> {
+    fan.iter().take(1).flat_map(|first| [first[0], first[1]]).chain(fan.iter().map(|corners| corners[2]))
+}
+
+/// The polygon that this fan describes, in its plane.
+fn outline(fan: &[[u32; 3]], positions: &[Vec3]) -> Vec<DVec2> {
+    let point = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default().as_dvec3();
+    in_plane(&corners(fan).map(point).collect::<Vec<DVec3>>())
+}
+
+/// Cuts the concave polygon that this fan describes; `false` when no tests are left.
 fn cut(fan: &mut [[u32; 3]], positions: &[Vec3], tests: &mut u64) -> bool {
-    let corners: Vec<u32> =
-        fan.iter().take(1).flat_map(|first| [first[0], first[1]]).chain(fan.iter().map(|corners| corners[2])).collect();
-    let points: Vec<DVec3> =
-        corners.iter().map(|corner| positions.get(*corner as usize).copied().unwrap_or_default().as_dvec3()).collect();
-    let points = in_plane(&points);
-    if is_convex(&points) {
-        return true;
-    }
-    let Some(ears) = ears(&points, tests) else { return false };
+    let Some(ears) = ears(&outline(fan, positions), tests) else { return false };
+    let corners: Vec<u32> = corners(fan).collect();
     for (triangle, ear) in fan.iter_mut().zip(ears) {
         *triangle = ear.map(|corner| corners.get(corner).copied().unwrap_or_default());
     }

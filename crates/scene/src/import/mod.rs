@@ -15,6 +15,7 @@ mod assemble;
 mod error;
 mod faces;
 mod obj;
+mod pieces;
 mod ply;
 mod sniff;
 mod stl;
@@ -26,9 +27,10 @@ mod weld;
 pub use error::{Fault, ImportError, Place};
 
 use juggler_tracer::shape::MeshData;
+use pieces::PIECE;
 use sniff::Format;
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 /// A mesh, and what of the file is not in it.
@@ -92,9 +94,18 @@ fn too_many(quantity: &'static str, found: u64, limit: u64) -> Fault {
 /// Loads a mesh from a file named `.obj`, `.ply` or `.stl` (in any case). Content that is plainly of
 /// another of these formats is read as what it is, with a warning.
 pub fn load(path: &Path, limits: &Limits) -> Result<Imported, ImportError> {
-    let in_file = |fault| ImportError { path: path.to_owned(), fault };
-    let bytes = read_file(path, limits).map_err(in_file)?;
-    parse(path, &bytes, limits)
+    parse(path, &read(path, limits)?, limits)
+}
+
+/// The bytes of a file that [`parse`] is to be given: an ordinary one, for what waits for another program could
+/// wait forever.
+pub fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, ImportError> {
+    read_file(path, limits).map_err(|fault| ImportError { path: path.to_owned(), fault })
+}
+
+/// Whether a file's name ends as that of a mesh does.
+pub fn is_mesh_name(path: &Path) -> bool {
+    Format::of_name(path).is_some()
 }
 
 /// As [`load`], from the bytes of a file; only the ending of `path` is looked at.
@@ -106,9 +117,9 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, Imp
     let named = Format::of_name(path);
     let format = Format::of_content(bytes).or(named).ok_or(Fault::UnknownFormat).map_err(in_file)?;
     let result = match format {
-        Format::Obj => obj::read(bytes, limits),
-        Format::Ply => ply::read(bytes, limits),
-        Format::Stl => stl::read(bytes, limits),
+        Format::Obj => obj::read(bytes, limits, PIECE),
+        Format::Ply => ply::read(bytes, limits, PIECE),
+        Format::Stl => stl::read(bytes, limits, PIECE),
     };
     let mut imported = result.map_err(in_file)?;
     if named != Some(format) {
@@ -118,12 +129,17 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, Imp
 }
 
 fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Fault> {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
+        let kind = if metadata.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::Unsupported };
+        return Err(Fault::Read(kind.into()));
+    }
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     limits.check_bytes(size)?;
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(usize::try_from(size).unwrap_or(usize::MAX)).map_err(std::io::Error::other)?;
-    // A pipe does not know its size, and a file may grow: one byte too many is enough to know.
+    // A file may grow: one byte too many is enough to know.
     file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
     limits.check_bytes(bytes.len() as u64)?;
     Ok(bytes)

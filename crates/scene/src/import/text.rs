@@ -3,8 +3,11 @@
 //! Every byte up to the space separates words. A line ends with `\n`, `\r\n` or a lone `\r`.
 
 use super::error::{Fault, Place, quote};
+use super::pieces::line_break;
+use memchr::memchr2;
 
 /// Walks through a text word by word and knows the line it is on.
+#[derive(Clone)]
 pub(super) struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -18,9 +21,19 @@ impl<'a> Scanner<'a> {
         Self { bytes, at: 0, line: 1, wavefront: false }
     }
 
+    /// Has the first line count as this one.
+    pub fn starting_at_line(self, line: u64) -> Self {
+        Self { line, ..self }
+    }
+
     /// As [`Scanner::new`] by the rules of OBJ: `#` starts a comment, `\` at a line's end continues it.
     pub fn wavefront(bytes: &'a [u8]) -> Self {
         Self { wavefront: true, ..Self::new(bytes) }
+    }
+
+    /// Number of this line.
+    pub fn line(&self) -> u64 {
+        self.line
     }
 
     /// The line of the word read last.
@@ -98,10 +111,14 @@ impl<'a> Scanner<'a> {
 
     /// Passes what is left of this line, and its end; `false` when there is no next line.
     pub fn next_line(&mut self) -> bool {
-        if self.wavefront {
-            while self.word().is_some() {}
-        }
+        let start = self.at;
         self.skip_to_line_end();
+        if self.wavefront && self.bytes.get(start..self.at).is_some_and(|line| line.ends_with(b"\\")) {
+            // The line goes on, unless a comment ends like this.
+            self.at = start;
+            while self.word().is_some() {}
+            self.skip_to_line_end();
+        }
         self.break_line()
     }
 
@@ -137,7 +154,7 @@ impl<'a> Scanner<'a> {
 
     fn skip_to_line_end(&mut self) {
         let rest = self.rest();
-        self.at += rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
+        self.at += memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
     }
 
     fn break_line(&mut self) -> bool {
@@ -145,15 +162,6 @@ impl<'a> Scanner<'a> {
         self.at += length;
         self.line += u64::from(length > 0);
         length > 0
-    }
-}
-
-/// Length of the line's end that stands here; 0 when none does.
-fn line_break(bytes: &[u8]) -> usize {
-    match bytes {
-        [b'\r', b'\n', ..] => 2,
-        [b'\r' | b'\n', ..] => 1,
-        _ => 0,
     }
 }
 

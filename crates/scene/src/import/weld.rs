@@ -1,63 +1,143 @@
 //! Equal keys become one vertex: corners of an OBJ with equal index triples, of an STL with equal positions.
 //!
-//! Vertices are numbered in the order of their first corner. The table is only asked, never walked
-//! through, so its random seed (which no crafted file can foresee) does not show in the result.
+//! Vertices are numbered in the order of their first corner. Each piece of a file is welded by itself (a [`Welder`]
+//! whose table stays in the cache), then the keys of all pieces among each other ([`Welded`]), shared out by their
+//! bits. Tables are only asked, never walked through, so their random seeds (which no crafted file can foresee) do
+//! not show in the result.
 
-use super::Limits;
 use super::error::Fault;
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use super::faces::Faces;
+use super::{Limits, too_many};
+use foldhash::fast::RandomState;
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rayon::prelude::*;
+use std::hash::BuildHasher;
 
-/// Vertices remembered outside the table: neighbours in a file are mostly neighbours on the surface.
-const RECENT: usize = 1 << 14;
+/// What makes a vertex this vertex.
+pub(super) type Key = [u32; 3];
+
+/// Shares that the keys of all pieces are welded in, side by side.
+const SHARES: u32 = 8;
 
 /// Gives equal keys equal indices.
+#[derive(Default)]
 pub(super) struct Welder {
-    indices: HashMap<[u32; 3], u32>,
-    keys: Vec<[u32; 3]>,
-    /// An index that may be that of a key with this slot.
-    recent: Vec<u32>,
-}
-
-impl Default for Welder {
-    fn default() -> Self {
-        Self { indices: HashMap::new(), keys: Vec::new(), recent: vec![0; RECENT] }
-    }
+    indices: HashTable<u32>,
+    keys: Vec<Key>,
+    state: RandomState,
 }
 
 impl Welder {
     /// The vertex of this key, a new one when the key is new.
-    pub fn index(&mut self, key: [u32; 3], limits: &Limits) -> Result<u32, Fault> {
-        let slot = slot(key);
-        if let Some(index) = self.recent.get(slot)
-            && self.keys.get(*index as usize) == Some(&key)
-        {
-            return Ok(*index);
-        }
-        let index = match self.indices.entry(key) {
-            Entry::Occupied(known) => *known.get(),
+    pub fn index(&mut self, key: Key, limits: &Limits) -> Result<u32, Fault> {
+        let Self { indices, keys, state } = self;
+        let known = |index: &u32| keys.get(*index as usize).copied();
+        let entry = indices.entry(
+            state.hash_one(key),
+            |index| known(index) == Some(key),
+            |i| state.hash_one(known(i).unwrap_or_default()),
+        );
+        match entry {
+            Entry::Occupied(known) => Ok(*known.get()),
             Entry::Vacant(vacant) => {
-                let index = limits.next_vertex(self.keys.len())?;
-                self.keys.push(key);
-                *vacant.insert(index)
+                let index = limits.next_vertex(keys.len())?;
+                vacant.insert(index);
+                keys.push(key);
+                Ok(index)
             }
-        };
-        if let Some(recent) = self.recent.get_mut(slot) {
-            *recent = index;
         }
-        Ok(index)
-    }
-
-    /// The different keys, in the order of their indices.
-    pub fn into_keys(self) -> Vec<[u32; 3]> {
-        self.keys
     }
 }
 
-/// Where among the recent vertices a key is remembered (Knuth's multiplicative hashing).
-fn slot(key: [u32; 3]) -> usize {
-    let mixed = key.iter().fold(0_u32, |mixed, word| (mixed ^ word).wrapping_mul(0x9e37_79b1));
-    (mixed >> 18) as usize % RECENT
+/// Faces with corners that are welded: of a piece of a file.
+#[derive(Default)]
+pub(super) struct Piece {
+    /// Their keys.
+    pub corners: Welder,
+    /// The faces.
+    pub faces: Faces,
+}
+
+/// The pieces of a file, put together.
+#[derive(Default)]
+pub(super) struct Welded {
+    keys: Vec<Key>,
+    faces: Faces,
+    pieces: usize,
+}
+
+impl Welded {
+    /// For this many triangles.
+    pub fn with_capacity(triangles: usize) -> Self {
+        Self { faces: Faces::with_capacity(triangles), ..Self::default() }
+    }
+
+    /// Takes over the next piece of the file.
+    pub fn append(&mut self, piece: Piece, limits: &Limits) -> Result<(), Fault> {
+        let all = self.keys.len().saturating_add(piece.corners.keys.len());
+        let (Ok(first), Ok(_)) = (u32::try_from(self.keys.len()), u32::try_from(all)) else {
+            return Err(too_many("vertices", all as u64, limits.vertices.into()));
+        };
+        self.keys.extend(piece.corners.keys);
+        self.pieces += 1;
+        self.faces.append(&piece.faces, first, limits)
+    }
+
+    /// The different keys in the order of their first corner, and the faces.
+    pub fn finish(mut self, limits: &Limits) -> Result<(Vec<Key>, Faces), Fault> {
+        if self.pieces > 1 {
+            let numbers = number(&mut self.keys);
+            self.faces.renumber(|corner| numbers.get(corner as usize).copied().unwrap_or_default());
+        }
+        limits.check_vertices(self.keys.len() as u64)?;
+        Ok((self.keys, self.faces))
+    }
+}
+
+/// The number of each key's vertex; keys that were there before are taken out.
+fn number(keys: &mut Vec<Key>) -> Vec<u32> {
+    let again: Vec<Vec<(u32, u32)>> = (0..SHARES).into_par_iter().map(|share| repeated(keys, share)).collect();
+    // First the place of the equal key before, for a new one its own; then their numbers.
+    let mut numbers: Vec<u32> = (0..keys.len() as u32).collect();
+    for (place, first) in again.into_iter().flatten() {
+        numbers[place as usize] = first;
+    }
+    let mut count = 0;
+    for place in 0..keys.len() {
+        let first = numbers[place] as usize;
+        if first < place {
+            numbers[place] = numbers[first];
+            continue;
+        }
+        keys[count] = keys[place];
+        numbers[place] = count as u32;
+        count += 1;
+    }
+    keys.truncate(count);
+    numbers
+}
+
+/// Places of keys that stood before, with their first place, among the keys of a share.
+fn repeated(keys: &[Key], share: u32) -> Vec<(u32, u32)> {
+    let state = RandomState::default();
+    let mut firsts = HashTable::with_capacity(keys.len() / SHARES as usize);
+    let mut again = Vec::new();
+    for (place, key) in (0..).zip(keys).filter(|(_, key)| share_of(key) == share) {
+        let equal = |first: &u32| keys.get(*first as usize) == Some(key);
+        match firsts
+            .entry(state.hash_one(key), equal, |i| state.hash_one(keys.get(*i as usize).copied().unwrap_or_default()))
+        {
+            Entry::Occupied(first) => again.push((place, *first.get())),
+            Entry::Vacant(vacant) => drop(vacant.insert(place)),
+        }
+    }
+    again
+}
+
+/// The share of a key (Knuth's multiplicative hashing).
+fn share_of(key: &Key) -> u32 {
+    key.iter().fold(0_u32, |mixed, word| (mixed ^ word).wrapping_mul(0x9e37_79b1)) >> 16 & (SHARES - 1)
 }
 
 #[cfg(test)]
@@ -72,19 +152,34 @@ mod tests {
         let indices: Vec<u32> = keys.iter().map(|key| welder.index(*key, &limits).unwrap()).collect();
         assert_eq!(indices, [0, 1, 0, 2, 1]);
         assert!(matches!(welder.index([9, 9, 9], &limits), Err(Fault::TooMany { found: 4, limit: 3, .. })));
-        assert_eq!(welder.into_keys(), [[7, 0, 0], [1, 2, 3], [3, 2, 1]]);
+        assert_eq!(welder.keys, [[7, 0, 0], [1, 2, 3], [3, 2, 1]]);
     }
 
+    /// Triangles of few different corners, cut into pieces anywhere, against all of them in one piece.
     #[test]
-    fn far_more_keys_than_are_remembered() {
-        let mut welder = Welder::default();
+    fn pieces_are_welded_as_the_whole() {
         let limits = Limits::default();
-        for round in 0..2 {
-            for key in 0..50_000_u32 {
-                let index = welder.index([key, 0, key % 7], &limits).unwrap();
-                assert_eq!(index, key, "round {round}");
+        let corner = |i: u32| [0, juggler_math::hash::mix(i) % 500, 0];
+        let weld = |size: usize| {
+            let triangles: Vec<u32> = (0..2000).collect();
+            let mut welded = Welded::default();
+            for piece in triangles.chunks(size) {
+                let mut local = Piece::default();
+                for i in piece {
+                    let corners = [0, 1, 2].map(|c| local.corners.index(corner(i * 3 + c), &limits).unwrap());
+                    local.faces.push_triangle(corners, &limits).unwrap();
+                }
+                welded.append(local, &limits).unwrap();
             }
+            let (keys, faces) = welded.finish(&limits).unwrap();
+            (keys, faces.settle(&[], &mut Vec::new()))
+        };
+        let whole = weld(2000);
+        assert_eq!(whole.0.len(), 500);
+        for size in [1, 2, 7, 333, 1999] {
+            assert!(weld(size) == whole, "{size}");
         }
-        assert_eq!(welder.into_keys().len(), 50_000);
+        let corners = whole.1.as_flattened().iter().zip(0..);
+        assert!(corners.into_iter().all(|(index, i)| whole.0[*index as usize] == corner(i)));
     }
 }

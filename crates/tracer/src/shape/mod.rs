@@ -83,8 +83,12 @@ pub trait Shape: Send + Sync {
     fn triangles(&self) -> usize {
         0
     }
-    /// Bytes on the heap.
+    /// Bytes on the heap, those of a hierarchy of its own not among them.
     fn heap_bytes(&self) -> usize {
+        0
+    }
+    /// Bytes of a hierarchy of its own.
+    fn bvh_bytes(&self) -> usize {
         0
     }
 }

@@ -9,6 +9,7 @@ use crate::surface::Surface;
 use juggler_bvh::{Bvh, Quality};
 use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 mod items;
 mod trace;
@@ -82,9 +83,9 @@ pub struct Geometry {
     pub triangles: usize,
     /// Lights.
     pub lights: usize,
-    /// Bytes of shapes.
+    /// Bytes of shapes, each mesh counted once however often it is placed.
     pub geometry_bytes: usize,
-    /// Bytes of the hierarchy over the objects.
+    /// Bytes of the hierarchies, over the objects and within meshes.
     pub bvh_bytes: usize,
 }
 
@@ -174,14 +175,24 @@ impl World {
 
     /// Counts for reports.
     pub fn geometry(&self) -> Geometry {
+        // Copies of a mesh share its arrays and its hierarchy.
+        let mut meshes = BTreeSet::new();
+        let shapes = self.objects.iter().map(|placed| &placed.object.shape);
+        let stored: Vec<&AnyShape> = shapes
+            .clone()
+            .filter(|shape| match shape {
+                AnyShape::Mesh(mesh) => mesh.data().is_none_or(|data| meshes.insert(std::ptr::from_ref(data).addr())),
+                _ => true,
+            })
+            .collect();
         Geometry {
             shapes: self.objects.len(),
-            triangles: self.objects.iter().map(|o| o.object.shape.triangles()).sum(),
+            triangles: shapes.map(|shape| shape.triangles()).sum(),
             lights: self.lamps.len(),
-            geometry_bytes: size_of::<Placed>() * self.objects.len()
-                + size_of::<Item>() * self.items.len()
-                + self.objects.iter().map(|o| o.object.shape.heap_bytes()).sum::<usize>(),
-            bvh_bytes: self.bvh.bytes(),
+            geometry_bytes: size_of_val(self.objects.as_slice())
+                + size_of_val(self.items.as_slice())
+                + stored.iter().map(|shape| shape.heap_bytes()).sum::<usize>(),
+            bvh_bytes: self.bvh.bytes() + stored.iter().map(|shape| shape.bvh_bytes()).sum::<usize>(),
         }
     }
 }

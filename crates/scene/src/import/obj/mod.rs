@@ -8,72 +8,144 @@
 //! single mesh has no place for (groups, materials, smoothing groups, lines, curves, colours behind a
 //! position) is counted and left out.
 
+mod notes;
 #[cfg(test)]
 mod tests;
 
 use super::assemble::Parts;
-use super::error::{Fault, Place, quote};
-use super::faces::Faces;
+use super::error::{Fault, quote};
+use super::pieces::{next_line_start, read_pieces};
 use super::text::{Scanner, integer};
-use super::weld::Welder;
+use super::weld::{Key, Piece, Welded};
 use super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
-use std::collections::BTreeMap;
+use notes::Notes;
+use rayon::prelude::*;
 
 /// Stands for an index that a corner does not give.
 const NONE: u32 = u32::MAX;
 
-/// Kinds of ignored statements that a warning names; a file of random words has more.
-const NAMED_STATEMENTS: usize = 16;
+/// Reads a whole file in pieces of about this many bytes.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+    let texts = cut(bytes, piece);
+    let mut start = Start { line: 1, ..Start::default() };
+    let mut starts = Vec::with_capacity(texts.len());
+    read_pieces(
+        &texts,
+        |text| Ok(Start::of_next(text)),
+        |counts| {
+            starts.push(start);
+            start.add(&counts);
+            Ok(())
+        },
+    )?;
+    let mut whole = Whole::with_room_for(&start, limits);
+    let pieces: Vec<(&[u8], Start)> = texts.into_iter().zip(starts).collect();
+    read_pieces(&pieces, |(text, start)| read_piece(text, *start, limits), |piece| whole.append(piece, limits))?;
+    whole.finish(limits)
+}
 
-/// Reads a whole file.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
-    let mut scanner = Scanner::wavefront(bytes);
-    let mut reader = Reader::default();
+/// Cut at lines' ends that no `\` before them takes away.
+fn cut(bytes: &[u8], piece: usize) -> Vec<&[u8]> {
+    let mut pieces = Vec::new();
+    let mut rest = bytes;
+    while let Some((first, after)) =
+        next_line_start(rest, piece, |before, _| !before.ends_with(b"\\")).and_then(|at| rest.split_at_checked(at))
+    {
+        pieces.push(first);
+        rest = after;
+    }
+    pieces.push(rest);
+    pieces
+}
+
+/// What stands before a piece.
+#[derive(Clone, Copy, Default)]
+struct Start {
+    line: u64,
+    /// Positions, surface coordinates and normals.
+    counts: [usize; 3],
+    faces: usize,
+}
+
+impl Start {
+    /// Counts in a piece of text: what must be added for the piece after it.
+    fn of_next(text: &[u8]) -> Self {
+        let mut found = Self::default();
+        let mut scanner = Scanner::wavefront(text).starting_at_line(0);
+        loop {
+            match scanner.word() {
+                Some(b"v") => found.counts[0] += 1,
+                Some(b"vt") => found.counts[1] += 1,
+                Some(b"vn") => found.counts[2] += 1,
+                Some(b"f" | b"fo") => found.faces += 1,
+                _ => {}
+            }
+            if !scanner.next_line() {
+                found.line = scanner.line();
+                return found;
+            }
+        }
+    }
+
+    fn add(&mut self, piece: &Self) {
+        self.line += piece.line;
+        self.faces += piece.faces;
+        self.counts.iter_mut().zip(piece.counts).for_each(|(sum, count)| *sum += count);
+    }
+}
+
+fn read_piece(text: &[u8], start: Start, limits: &Limits) -> Result<Reader, Fault> {
+    let mut scanner = Scanner::wavefront(text).starting_at_line(start.line);
+    let mut reader = Reader { start: start.counts, ..Reader::default() };
     loop {
         reader.statement(&mut scanner, limits)?;
         if !scanner.next_line() {
-            return reader.finish();
+            return Ok(reader);
         }
     }
 }
 
+/// What a piece of the text holds.
 #[derive(Default)]
 struct Reader {
+    /// Positions, surface coordinates and normals before it.
+    start: [usize; 3],
     positions: Vec<Vec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
-    /// The furthest position that was named before it was defined, and where.
-    furthest: Option<(u32, Place)>,
-    corners: Welder,
-    faces: Faces,
+    welded: Piece,
     /// The face being read; kept for its memory.
     face: Vec<u32>,
-    ignored: BTreeMap<String, u64>,
-    other_ignored: u64,
-    colors: u64,
+    notes: Notes,
 }
 
 impl Reader {
+    /// How many positions, surface coordinates and normals stand before this place.
+    fn counts(&self) -> [usize; 3] {
+        let [v, vt, vn] = self.start;
+        [v + self.positions.len(), vt + self.uvs.len(), vn + self.normals.len()]
+    }
+
     fn statement(&mut self, scanner: &mut Scanner<'_>, limits: &Limits) -> Result<(), Fault> {
         match scanner.word() {
             None => {}
             Some(b"v") => {
-                limits.next_vertex(self.positions.len())?;
+                limits.next_vertex(self.counts()[0])?;
                 self.positions.push(vec3(scanner.finite("x")?, scanner.finite("y")?, scanner.finite("z")?));
-                self.colors += u64::from(scanner.word().is_some());
+                self.notes.colors += u64::from(scanner.word().is_some());
             }
             Some(b"vt") => {
-                limits.next_vertex(self.uvs.len())?;
+                limits.next_vertex(self.counts()[1])?;
                 self.uvs.push(surface_coordinate(scanner)?);
             }
             Some(b"vn") => {
-                limits.next_vertex(self.normals.len())?;
+                limits.next_vertex(self.counts()[2])?;
                 let [x, y, z] = ["x", "y", "z"];
                 self.normals.push(vec3(scanner.real(x)?, scanner.real(y)?, scanner.real(z)?));
             }
             Some(b"f" | b"fo") => self.face(scanner, limits)?,
-            Some(other) => self.ignore(other),
+            Some(other) => self.notes.ignore(other),
         }
         Ok(())
     }
@@ -82,14 +154,14 @@ impl Reader {
         self.face.clear();
         while let Some(word) = scanner.word() {
             let triple = self.corner(word, scanner)?;
-            self.face.push(self.corners.index(triple, limits)?);
+            self.face.push(self.welded.corners.index(triple, limits)?);
         }
-        self.faces.push(&self.face, limits)
+        self.welded.faces.push(&self.face, limits)
     }
 
     /// One corner: `7`, `7/2`, `7//3` or `7/2/3`; an empty index at the end (`7/2/`) is as none.
     fn corner(&mut self, word: &[u8], scanner: &Scanner<'_>) -> Result<[u32; 3], Fault> {
-        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
+        let counts = self.counts();
         let mut parts = word.split(|byte| *byte == b'/');
         let mut triple = [NONE; 3];
         for (stream, count) in counts.into_iter().enumerate() {
@@ -106,56 +178,62 @@ impl Reader {
         if parts.next().is_some() {
             return Err(scanner.place().fault(format!("expected {STREAMS}, found {}", quote(word))));
         }
-        if triple[0] as usize >= counts[0] && self.furthest.is_none_or(|(known, _)| known < triple[0]) {
-            self.furthest = Some((triple[0], scanner.place()));
+        if triple[0] as usize >= counts[0] {
+            self.notes.not_yet_defined(triple[0], scanner.place());
         }
         Ok(triple)
     }
+}
 
-    fn ignore(&mut self, statement: &[u8]) {
-        let name = quote(statement);
-        if let Some(count) = self.ignored.get_mut(&name) {
-            *count += 1;
-        } else if self.ignored.len() < NAMED_STATEMENTS {
-            self.ignored.insert(name, 1);
-        } else {
-            self.other_ignored += 1;
+/// All pieces of a text put together.
+#[derive(Default)]
+struct Whole {
+    positions: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    normals: Vec<Vec3>,
+    welded: Welded,
+    notes: Notes,
+}
+
+impl Whole {
+    /// For as much as was counted, which the text really holds.
+    fn with_room_for(counted: &Start, limits: &Limits) -> Self {
+        let [v, vt, vn] = counted.counts.map(|count| count.min(limits.vertices as usize));
+        Self {
+            positions: Vec::with_capacity(v),
+            uvs: Vec::with_capacity(vt),
+            normals: Vec::with_capacity(vn),
+            welded: Welded::with_capacity(counted.faces.min(limits.triangles as usize)),
+            notes: Notes::default(),
         }
     }
 
-    fn finish(self) -> Result<Imported, Fault> {
+    fn append(&mut self, piece: Reader, limits: &Limits) -> Result<(), Fault> {
+        self.positions.extend(piece.positions);
+        self.uvs.extend(piece.uvs);
+        self.normals.extend(piece.normals);
+        self.notes.append(piece.notes);
+        self.welded.append(piece.welded, limits)
+    }
+
+    fn finish(self, limits: &Limits) -> Result<Imported, Fault> {
         let count = self.positions.len();
-        if let Some((index, place)) = self.furthest.filter(|(index, _)| *index as usize >= count) {
+        if let Some((index, place)) = self.notes.furthest.filter(|(index, _)| *index as usize >= count) {
             let number = u64::from(index) + 1;
             return Err(place.fault(format!("{} index {number}: the file has only {count}", NAMES[0])));
         }
-        let mut warnings = self.ignored_in_words();
-        let mut keys = self.corners.into_keys();
+        let mut warnings = self.notes.in_words();
+        let (mut keys, faces) = self.welded.finish(limits)?;
         drop_undefined(&mut keys, 1, self.uvs.len(), &mut warnings);
         drop_undefined(&mut keys, 2, self.normals.len(), &mut warnings);
-        let positions = keys.iter().map(|key| pick(&self.positions, key[0])).collect();
+        let positions = all(&keys, 0, &self.positions);
         let normals = if self.normals.is_empty() { Vec::new() } else { all(&keys, 2, &self.normals) };
         let without = keys.iter().filter(|key| key[1] == NONE).count();
         let uvs = if without == keys.len() { Vec::new() } else { all(&keys, 1, &self.uvs) };
         if !uvs.is_empty() && without > 0 {
             warnings.push(format!("{without} vertices have no surface coordinates and get 0 0"));
         }
-        Parts { positions, normals, uvs, faces: self.faces, warnings }.assemble()
-    }
-
-    fn ignored_in_words(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.colors > 0 {
-            warnings.push(format!("{} vertices have colours or weights after x y z: ignored", self.colors));
-        }
-        let mut kinds: Vec<String> = self.ignored.iter().map(|(name, count)| format!("{count} {name}")).collect();
-        if self.other_ignored > 0 {
-            kinds.push(format!("{} others", self.other_ignored));
-        }
-        if !kinds.is_empty() {
-            warnings.push(format!("ignored statements: {}", kinds.join(", ")));
-        }
-        warnings
+        Parts { positions, normals, uvs, faces, warnings }.assemble()
     }
 }
 
@@ -185,7 +263,7 @@ fn out_of_range(index: i64, stream: usize, count: usize) -> String {
 }
 
 /// Takes out indices beyond the last surface coordinate or normal.
-fn drop_undefined(keys: &mut [[u32; 3]], stream: usize, count: usize, warnings: &mut Vec<String>) {
+fn drop_undefined(keys: &mut [Key], stream: usize, count: usize, warnings: &mut Vec<String>) {
     let mut dropped = 0_u64;
     for index in keys.iter_mut().filter_map(|key| key.get_mut(stream)) {
         if *index != NONE && *index as usize >= count {
@@ -199,10 +277,6 @@ fn drop_undefined(keys: &mut [[u32; 3]], stream: usize, count: usize, warnings: 
 }
 
 /// One entry of each key, zero where a key has none.
-fn all<T: Copy + Default>(keys: &[[u32; 3]], stream: usize, values: &[T]) -> Vec<T> {
-    keys.iter().map(|key| pick(values, key[stream])).collect()
-}
-
-fn pick<T: Copy + Default>(values: &[T], index: u32) -> T {
-    values.get(index as usize).copied().unwrap_or_default()
+fn all<T: Copy + Default + Send + Sync>(keys: &[Key], stream: usize, values: &[T]) -> Vec<T> {
+    keys.par_iter().map(|key| values.get(key[stream] as usize).copied().unwrap_or_default()).collect()
 }

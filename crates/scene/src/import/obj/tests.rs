@@ -1,16 +1,17 @@
 //! The rules of OBJ, one by one.
 
 use super::super::error::{Fault, Place};
+use super::super::pieces::PIECE;
 use super::super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
 
 fn read(text: &str) -> Imported {
-    super::read(text.as_bytes(), &Limits::default()).unwrap()
+    super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap()
 }
 
 /// The line and the message of the fault.
 fn fault(text: &str) -> (u64, String) {
-    match super::read(text.as_bytes(), &Limits::default()).unwrap_err() {
+    match super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap_err() {
         Fault::Malformed { place: Place::Line(line), message } => (line, message),
         other => panic!("expected a line: {other}"),
     }
@@ -172,7 +173,7 @@ fn faults_name_the_line_and_what_was_expected() {
 #[test]
 fn limits_are_kept_and_named() {
     let check = |text: &str, limits: Limits, expected: &str| {
-        assert_eq!(super::read(text.as_bytes(), &limits).unwrap_err().to_string(), expected);
+        assert_eq!(super::read(text.as_bytes(), &limits, PIECE).unwrap_err().to_string(), expected);
     };
     let few = Limits { vertices: 3, ..Limits::default() };
     check(&format!("{SQUARE}f 1 2 3\n"), few, "at least 4 vertices, the limit is 3");
@@ -180,5 +181,5 @@ fn limits_are_kept_and_named() {
     check(seams, few, "at least 4 vertices, the limit is 3");
     let one = Limits { triangles: 1, ..Limits::default() };
     check(&format!("{SQUARE}f 1 2 3 4\n"), one, "at least 2 triangles, the limit is 1");
-    assert!(super::read(SQUARE.as_bytes(), &one).unwrap_err().to_string().starts_with("holds no triangle"));
+    assert!(super::read(SQUARE.as_bytes(), &one, PIECE).unwrap_err().to_string().starts_with("holds no triangle"));
 }

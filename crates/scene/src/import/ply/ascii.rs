@@ -3,9 +3,10 @@
 use super::super::error::{Fault, Place};
 use super::super::text::{self, Scanner};
 use super::body::Values;
-use super::header::Scalar;
+use super::header::{Element, Scalar};
 
 /// A text after its header.
+#[derive(Clone)]
 pub(super) struct AsciiValues<'a>(Scanner<'a>);
 
 impl<'a> AsciiValues<'a> {
@@ -48,13 +49,23 @@ impl Values for AsciiValues<'_> {
         self.double(what).map(|value| value as f32)
     }
 
-    fn integer(&mut self, kind: Scalar, what: &str) -> Result<i64, Fault> {
-        if matches!(kind, Scalar::F32 | Scalar::F64) {
-            let value = self.double(what)?;
-            return text::whole(value, self.place(), what);
+    fn integers(
+        &mut self,
+        kind: Scalar,
+        count: u64,
+        what: &str,
+        mut take: impl FnMut(Place, i64) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        for _ in 0..count {
+            let value = if matches!(kind, Scalar::F32 | Scalar::F64) {
+                text::whole(self.double(what)?, self.place(), what)?
+            } else {
+                let word = self.0.word();
+                word.and_then(text::integer).ok_or_else(|| self.0.expected(what, word))?
+            };
+            take(self.place(), value)?;
         }
-        let word = self.0.word();
-        word.and_then(text::integer).ok_or_else(|| self.0.expected(what, word))
+        Ok(())
     }
 
     fn skip(&mut self, _kind: Scalar, count: u64) -> Result<(), Fault> {
@@ -62,6 +73,14 @@ impl Values for AsciiValues<'_> {
             if self.0.word().is_none() {
                 return Err(self.0.expected("one more value, as the header says", None));
             }
+        }
+        Ok(())
+    }
+
+    fn pass_rows(&mut self, _element: &Element, count: u64) -> Result<(), Fault> {
+        for _ in 0..count {
+            self.begin_row()?;
+            self.0.next_line();
         }
         Ok(())
     }

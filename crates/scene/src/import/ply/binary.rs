@@ -2,10 +2,11 @@
 
 use super::super::error::{Fault, Place};
 use super::super::text::whole;
-use super::body::Values;
-use super::header::{ByteOrder, Scalar};
+use super::body::{Values, skip};
+use super::header::{ByteOrder, Element, Scalar};
 
 /// The bytes after a header.
+#[derive(Clone)]
 pub(super) struct BinaryValues<'a> {
     rest: &'a [u8],
     size: usize,
@@ -18,6 +19,7 @@ impl<'a> BinaryValues<'a> {
         Self { rest: file.get(start..).unwrap_or_default(), size: file.len(), order }
     }
 
+    #[inline(always)]
     fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
         let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else { return Err(self.too_short(N as u64)) };
         self.rest = rest;
@@ -28,6 +30,23 @@ impl<'a> BinaryValues<'a> {
         Ok(bytes)
     }
 
+    /// The next values of N bytes. What they are is asked once a list, not once a value.
+    #[inline]
+    fn each<const N: usize>(
+        &mut self,
+        count: u64,
+        decode: impl Fn([u8; N], Place) -> Result<i64, Fault>,
+        mut take: impl FnMut(Place, i64) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        for _ in 0..count {
+            let place = self.place();
+            let value = decode(self.bytes()?, place)?;
+            take(place, value)?;
+        }
+        Ok(())
+    }
+
+    #[cold]
     fn too_short(&self, needed: u64) -> Fault {
         let found = self.rest.len();
         self.place().fault(format!("expected {needed} more bytes, found the end of the file after {found}"))
@@ -52,29 +71,52 @@ impl Values for BinaryValues<'_> {
         match kind {
             Scalar::F32 => self.bytes().map(f32::from_le_bytes),
             Scalar::F64 => self.bytes().map(|bytes| f64::from_le_bytes(bytes) as f32),
-            _ => self.integer(kind, what).map(|value| value as f32),
+            _ => {
+                let mut value = 0.0;
+                self.integers(kind, 1, what, |_, found| {
+                    value = found as f32;
+                    Ok(())
+                })?;
+                Ok(value)
+            }
         }
     }
 
     #[inline]
-    fn integer(&mut self, kind: Scalar, what: &str) -> Result<i64, Fault> {
-        let place = self.place();
-        Ok(match kind {
-            Scalar::I8 => i8::from_le_bytes(self.bytes()?).into(),
-            Scalar::U8 => u8::from_le_bytes(self.bytes()?).into(),
-            Scalar::I16 => i16::from_le_bytes(self.bytes()?).into(),
-            Scalar::U16 => u16::from_le_bytes(self.bytes()?).into(),
-            Scalar::I32 => i32::from_le_bytes(self.bytes()?).into(),
-            Scalar::U32 => u32::from_le_bytes(self.bytes()?).into(),
-            Scalar::F32 => whole(f32::from_le_bytes(self.bytes()?).into(), place, what)?,
-            Scalar::F64 => whole(f64::from_le_bytes(self.bytes()?), place, what)?,
-        })
+    fn integers(
+        &mut self,
+        kind: Scalar,
+        count: u64,
+        what: &str,
+        take: impl FnMut(Place, i64) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        match kind {
+            Scalar::I8 => self.each(count, |bytes, _| Ok(i8::from_le_bytes(bytes).into()), take),
+            Scalar::U8 => self.each(count, |bytes, _| Ok(u8::from_le_bytes(bytes).into()), take),
+            Scalar::I16 => self.each(count, |bytes, _| Ok(i16::from_le_bytes(bytes).into()), take),
+            Scalar::U16 => self.each(count, |bytes, _| Ok(u16::from_le_bytes(bytes).into()), take),
+            Scalar::I32 => self.each(count, |bytes, _| Ok(i32::from_le_bytes(bytes).into()), take),
+            Scalar::U32 => self.each(count, |bytes, _| Ok(u32::from_le_bytes(bytes).into()), take),
+            Scalar::F32 => self.each(count, |bytes, place| whole(f32::from_le_bytes(bytes).into(), place, what), take),
+            Scalar::F64 => self.each(count, |bytes, place| whole(f64::from_le_bytes(bytes), place, what), take),
+        }
     }
 
     fn skip(&mut self, kind: Scalar, count: u64) -> Result<(), Fault> {
         let length = count.saturating_mul(kind.size());
         let rest = usize::try_from(length).ok().and_then(|length| self.rest.get(length..));
         self.rest = rest.ok_or_else(|| self.too_short(length))?;
+        Ok(())
+    }
+
+    fn pass_rows(&mut self, element: &Element, count: u64) -> Result<(), Fault> {
+        if element.properties.iter().all(|property| property.length.is_none()) {
+            let row = element.properties.iter().map(|property| property.item.size()).sum::<u64>();
+            return self.skip(Scalar::U8, row.saturating_mul(count));
+        }
+        for _ in 0..count {
+            element.properties.iter().try_for_each(|property| skip(property, self))?;
+        }
         Ok(())
     }
 

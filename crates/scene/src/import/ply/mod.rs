@@ -16,16 +16,16 @@ mod vertices;
 use super::error::Fault;
 use super::text::Scanner;
 use super::{Imported, Limits};
+use body::Body;
 use header::{Encoding, Header};
 
-/// Reads a whole file.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
+/// Reads a whole file in pieces of about this many bytes.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
     let mut scanner = Scanner::new(bytes);
     let header = Header::read(&mut scanner)?;
+    let body = Body::new(&header, limits, piece);
     match header.encoding {
-        Encoding::Ascii => body::read(&header, ascii::AsciiValues::new(scanner), limits),
-        Encoding::Binary(order) => {
-            body::read(&header, binary::BinaryValues::new(bytes, scanner.position(), order), limits)
-        }
+        Encoding::Ascii => body.read(ascii::AsciiValues::new(scanner)),
+        Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
     }
 }

@@ -1,15 +1,16 @@
 //! The rules of PLY, one by one.
 
 use super::super::error::{Fault, Place};
+use super::super::pieces::PIECE;
 use super::super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
 
 fn read(bytes: impl AsRef<[u8]>) -> Imported {
-    super::read(bytes.as_ref(), &Limits::default()).unwrap()
+    super::read(bytes.as_ref(), &Limits::default(), PIECE).unwrap()
 }
 
 fn fault(bytes: impl AsRef<[u8]>) -> (Place, String) {
-    match super::read(bytes.as_ref(), &Limits::default()).unwrap_err() {
+    match super::read(bytes.as_ref(), &Limits::default(), PIECE).unwrap_err() {
         Fault::Malformed { place, message } => (place, message),
         other => panic!("expected a place: {other}"),
     }
@@ -234,11 +235,11 @@ fn headers_have_an_end() {
 #[test]
 fn limits_are_kept_and_named() {
     let check = |limits: Limits, expected: &str| {
-        assert_eq!(super::read(SQUARE.as_bytes(), &limits).unwrap_err().to_string(), expected);
+        assert_eq!(super::read(SQUARE.as_bytes(), &limits, PIECE).unwrap_err().to_string(), expected);
     };
     check(Limits { vertices: 3, ..Limits::default() }, "at least 4 vertices, the limit is 3");
     check(Limits { triangles: 1, ..Limits::default() }, "at least 2 triangles, the limit is 1");
     let no_faces = SQUARE.replace("face 1", "face 0").replace("4 0 1 2 3\n", "");
-    let fault = super::read(no_faces.as_bytes(), &Limits::default()).unwrap_err();
+    let fault = super::read(no_faces.as_bytes(), &Limits::default(), PIECE).unwrap_err();
     assert_eq!(fault.to_string(), "holds no triangle");
 }

@@ -1,10 +1,9 @@
 //! The element `vertex` of a PLY: which columns are what, and reading them.
 
-use super::super::Limits;
 use super::super::assemble::Parts;
 use super::super::error::Fault;
 use super::super::text::finite;
-use super::body::{Values, note_ignored, skip};
+use super::body::{Body, Rows, Values, note_ignored, skip};
 use super::header::Element;
 use juggler_math::{vec2, vec3};
 
@@ -50,20 +49,40 @@ fn assign(slots: &mut [Option<usize>], element: &Element, names: &[&str], first:
 
 /// Reads all rows. The caller has made sure that the file is long enough for them.
 pub(super) fn read_vertices(
+    body: &Body<'_>,
     element: &Element,
     values: &mut impl Values,
-    limits: &Limits,
     parts: &mut Parts,
 ) -> Result<(), Fault> {
     let columns = Columns::of(element)?;
     note_ignored(element, |index| columns.slots.get(index).is_some_and(Option::is_some), &mut parts.warnings);
-    limits.check_vertices(element.count)?;
-    let count = usize::try_from(element.count).unwrap_or(0);
+    body.limits.check_vertices(element.count)?;
+    reserve(parts, &columns, element.count);
+    body.read_rows(
+        element,
+        values,
+        |rows| read_piece(element, &columns, rows),
+        |piece| {
+            parts.positions.extend(piece.positions);
+            parts.normals.extend(piece.normals);
+            parts.uvs.extend(piece.uvs);
+            Ok(())
+        },
+    )
+}
+
+fn reserve(parts: &mut Parts, columns: &Columns, count: u64) {
+    let count = usize::try_from(count).unwrap_or(0);
     parts.positions.reserve_exact(count);
     parts.normals.reserve_exact(if columns.normals { count } else { 0 });
     parts.uvs.reserve_exact(if columns.uvs { count } else { 0 });
-    for _ in 0..element.count {
-        let [x, y, z, nx, ny, nz, u, v] = read_row(element, &columns, values)?;
+}
+
+fn read_piece(element: &Element, columns: &Columns, mut rows: Rows<impl Values>) -> Result<Parts, Fault> {
+    let mut parts = Parts::default();
+    reserve(&mut parts, columns, rows.count);
+    for _ in 0..rows.count {
+        let [x, y, z, nx, ny, nz, u, v] = read_row(element, columns, &mut rows.values)?;
         parts.positions.push(vec3(x, y, z));
         if columns.normals {
             parts.normals.push(vec3(nx, ny, nz));
@@ -72,7 +91,7 @@ pub(super) fn read_vertices(
             parts.uvs.push(vec2(u, v));
         }
     }
-    Ok(())
+    Ok(parts)
 }
 
 fn read_row(element: &Element, columns: &Columns, values: &mut impl Values) -> Result<[f32; SLOTS], Fault> {

@@ -2,8 +2,10 @@
 //! colours), little-endian.
 
 use super::super::error::{Fault, Place};
+use super::super::pieces::read_pieces;
+use super::super::weld::Welded;
 use super::super::{Imported, Limits};
-use super::Soup;
+use super::{Soup, Soups};
 use juggler_math::Vec3;
 
 const HEADER: usize = 80;
@@ -21,8 +23,8 @@ fn count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(*field)))
 }
 
-/// Reads a whole file.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
+/// Reads a whole file in pieces of about this many bytes.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
     let short = || Place::Byte(bytes.len() as u64).fault("expected an STL: text, or 80 bytes and a count of facets");
     let count = count(bytes).ok_or_else(short)?;
     let body = bytes.get(FACETS..).unwrap_or_default();
@@ -35,12 +37,18 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
     }
     let count = usize::try_from(count).unwrap_or(usize::MAX);
     limits.check_triangles(count)?;
-    let mut soup = Soup::default();
-    let mut colored = 0_u64;
-    for facet in body.chunks_exact(FACET).take(count) {
-        soup.push([corner(facet, 12), corner(facet, 24), corner(facet, 36)], limits)?;
-        colored += u64::from(!facet.ends_with(&[0, 0]));
-    }
+    let facets = body.get(..count * FACET).unwrap_or_default();
+    let pieces: Vec<&[u8]> = facets.chunks((piece / FACET).max(1) * FACET).collect();
+    let mut soups = Soups { welded: Welded::with_capacity(count), ..Soups::default() };
+    let mut colored = 0;
+    read_pieces(
+        &pieces,
+        |piece| read_piece(piece, limits),
+        |(soup, colors)| {
+            colored += colors;
+            soups.append(soup, limits)
+        },
+    )?;
     let mut warnings = Vec::new();
     if colored > 0 {
         warnings.push(format!("attributes (colours) of {colored} facets ignored"));
@@ -48,7 +56,18 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
     if let trailing @ 1.. = body.len() - count * FACET {
         warnings.push(format!("{trailing} bytes after the last facet ignored"));
     }
-    soup.finish(warnings)
+    soups.finish(warnings, limits)
+}
+
+/// The facets, and how many have attributes.
+fn read_piece(facets: &[u8], limits: &Limits) -> Result<(Soup, u64), Fault> {
+    let mut soup = Soup::default();
+    let mut colored = 0;
+    for facet in facets.chunks_exact(FACET) {
+        soup.push([corner(facet, 12), corner(facet, 24), corner(facet, 36)], limits)?;
+        colored += u64::from(!facet.ends_with(&[0, 0]));
+    }
+    Ok((soup, colored))
 }
 
 fn corner(facet: &[u8], at: usize) -> Vec3 {

@@ -13,21 +13,23 @@ pub(super) use binary::is_binary;
 
 use super::assemble::Parts;
 use super::error::Fault;
-use super::faces::Faces;
-use super::weld::Welder;
+use super::weld::{Piece, Welded};
 use super::{Imported, Limits};
 use juggler_math::Vec3;
 
-/// Reads a whole file.
-pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Imported, Fault> {
-    if is_binary(bytes) || !ascii::is_text(bytes) { binary::read(bytes, limits) } else { ascii::read(bytes, limits) }
+/// Reads a whole file in pieces of about this many bytes.
+pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+    if is_binary(bytes) || !ascii::is_text(bytes) {
+        binary::read(bytes, limits, piece)
+    } else {
+        ascii::read(bytes, limits, piece)
+    }
 }
 
 /// Facets as they come, welded.
 #[derive(Default)]
 struct Soup {
-    corners: Welder,
-    faces: Faces,
+    piece: Piece,
     dropped: u64,
 }
 
@@ -40,16 +42,31 @@ impl Soup {
         let mut triangle = [0; 3];
         for (index, corner) in triangle.iter_mut().zip(facet) {
             // Adding zero turns -0 into 0 and leaves every other number as it is.
-            *index = self.corners.index((corner + Vec3::ZERO).to_array().map(f32::to_bits), limits)?;
+            *index = self.piece.corners.index((corner + Vec3::ZERO).to_array().map(f32::to_bits), limits)?;
         }
-        self.faces.push_triangle(triangle, limits)
+        self.piece.faces.push_triangle(triangle, limits)
+    }
+}
+
+/// The facets of all pieces.
+#[derive(Default)]
+struct Soups {
+    welded: Welded,
+    dropped: u64,
+}
+
+impl Soups {
+    fn append(&mut self, soup: Soup, limits: &Limits) -> Result<(), Fault> {
+        self.dropped += soup.dropped;
+        self.welded.append(soup.piece, limits)
     }
 
-    fn finish(self, mut warnings: Vec<String>) -> Result<Imported, Fault> {
+    fn finish(self, mut warnings: Vec<String>, limits: &Limits) -> Result<Imported, Fault> {
         if self.dropped > 0 {
             warnings.push(format!("{} facets with infinite or NaN coordinates left out", self.dropped));
         }
-        let positions = self.corners.into_keys().into_iter().map(|key| Vec3::from(key.map(f32::from_bits))).collect();
-        Parts { positions, faces: self.faces, warnings, ..Parts::default() }.assemble()
+        let (keys, faces) = self.welded.finish(limits)?;
+        let positions = keys.into_iter().map(|key| Vec3::from(key.map(f32::from_bits))).collect();
+        Parts { positions, faces, warnings, ..Parts::default() }.assemble()
     }
 }

@@ -1,15 +1,16 @@
 //! The rules of STL, one by one.
 
 use super::super::error::{Fault, Place};
+use super::super::pieces::PIECE;
 use super::super::{Imported, Limits};
 use juggler_math::{Vec3, vec3};
 
 fn read(bytes: &[u8]) -> Imported {
-    super::read(bytes, &Limits::default()).unwrap()
+    super::read(bytes, &Limits::default(), PIECE).unwrap()
 }
 
 fn message(bytes: &[u8]) -> String {
-    super::read(bytes, &Limits::default()).unwrap_err().to_string()
+    super::read(bytes, &Limits::default(), PIECE).unwrap_err().to_string()
 }
 
 fn facet(corners: [Vec3; 3]) -> String {
@@ -109,7 +110,7 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
     ];
     for (old, new, line, message) in cases {
         let text = good.replacen(old, new, 1);
-        match super::read(text.as_bytes(), &Limits::default()).unwrap_err() {
+        match super::read(text.as_bytes(), &Limits::default(), PIECE).unwrap_err() {
             Fault::Malformed { place, message: found } => {
                 assert_eq!((place, found.as_str()), (Place::Line(line), message), "{old} -> {new}");
             }
@@ -123,7 +124,7 @@ fn faults_of_texts_name_the_line_and_what_was_expected() {
 fn limits_are_kept_and_named() {
     let bytes = binary("", &[LOWER, UPPER]);
     let check = |limits: Limits, expected: &str| {
-        assert_eq!(super::read(&bytes, &limits).unwrap_err().to_string(), expected);
+        assert_eq!(super::read(&bytes, &limits, PIECE).unwrap_err().to_string(), expected);
     };
     check(Limits { triangles: 1, ..Limits::default() }, "at least 2 triangles, the limit is 1");
     check(Limits { vertices: 3, ..Limits::default() }, "at least 4 vertices, the limit is 3");

@@ -3,6 +3,7 @@
 use crate::shape::check::{self, invalid};
 use crate::shape::{InvalidShape, facet::Facet};
 use juggler_math::{Vec2, Vec3};
+use rayon::prelude::*;
 
 /// The arrays of a triangle mesh. Importers fill it in, [`Mesh`](super::Mesh) takes it and checks it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,17 +34,14 @@ impl MeshData {
         let count = self.positions.len();
         per_position("normals", self.normals.len(), count)?;
         per_position("uvs", self.uvs.len(), count)?;
-        finite("positions", self.positions.iter().copied())?;
-        finite("normals", self.normals.iter().copied())?;
-        finite("uvs", self.uvs.iter().map(|uv| uv.extend(0.0)))?;
-        for (triangle, corners) in self.triangles.iter().enumerate() {
-            if let Some(corner) = corners.iter().position(|&index| index as usize >= count) {
-                let field = format!("triangles[{triangle}][{corner}]");
-                let message = format!("`{field}` is {}, but there are only {count} positions", corners[corner]);
-                return Err(invalid(field, message));
-            }
-        }
-        Ok(())
+        finite("positions", self.positions.par_iter().copied())?;
+        finite("normals", self.normals.par_iter().copied())?;
+        finite("uvs", self.uvs.par_iter().map(|uv| uv.extend(0.0)))?;
+        let corners = self.triangles.as_flattened();
+        let Some(wrong) = corners.par_iter().position_first(|&index| index as usize >= count) else { return Ok(()) };
+        let field = format!("triangles[{}][{}]", wrong / 3, wrong % 3);
+        let message = format!("`{field}` is {}, but there are only {count} positions", corners[wrong]);
+        Err(invalid(field, message))
     }
 }
 
@@ -59,9 +57,9 @@ fn per_position(field: &str, length: usize, positions: usize) -> Result<(), Inva
     Err(invalid(field, format!("`{field}` must be none or one per position ({positions}), are {length}")))
 }
 
-fn finite(field: &str, values: impl Iterator<Item = Vec3>) -> Result<(), InvalidShape> {
+fn finite(field: &str, values: impl IndexedParallelIterator<Item = Vec3>) -> Result<(), InvalidShape> {
     let within = |v: Vec3| v.abs().cmple(Vec3::splat(check::MAX_LENGTH)).all();
-    match values.enumerate().find(|(_, v)| !within(*v)) {
+    match values.enumerate().find_first(|(_, v)| !within(*v)) {
         Some((i, v)) => check::point(&format!("{field}[{i}]"), v),
         None => Ok(()),
     }

@@ -161,6 +161,10 @@ impl Shape for Mesh {
     fn heap_bytes(&self) -> usize {
         self.prepared.as_ref().map_or(0, |p| p.heap_bytes())
     }
+
+    fn bvh_bytes(&self) -> usize {
+        self.prepared.as_ref().map_or(0, |p| p.bvh().bytes())
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::MeshData;
 use crate::shape::{InvalidShape, check::invalid};
 use juggler_bvh::{Quality, TriangleBvh};
 use juggler_math::Aabb;
+use rayon::prelude::*;
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -19,20 +20,45 @@ pub struct Prepared {
     areas: OnceLock<Vec<f64>>,
 }
 
+/// What all triangles are together.
+struct Extent {
+    bounds: Aabb,
+    area: f64,
+    degenerate: usize,
+}
+
+impl Extent {
+    const NONE: Self = Self { bounds: Aabb::EMPTY, area: 0.0, degenerate: 0 };
+
+    /// Summed in blocks of a fixed size, so that the threads do not show.
+    fn of(data: &MeshData) -> Self {
+        const BLOCK: usize = 1 << 16;
+        let blocks = (0..data.triangles.len().div_ceil(BLOCK)).into_par_iter();
+        let blocks: Vec<Self> = blocks
+            .map(|block| {
+                let facets = (block * BLOCK..(block + 1) * BLOCK).map_while(|triangle| data.facet(triangle));
+                facets.fold(Self::NONE, |sum, facet| match facet.area() {
+                    area if area > 0.0 => {
+                        let bounds = facet.corners.into_iter().fold(sum.bounds, Aabb::with_point);
+                        Self { bounds, area: sum.area + area, ..sum }
+                    }
+                    _ => Self { degenerate: sum.degenerate + 1, ..sum },
+                })
+            })
+            .collect();
+        blocks.into_iter().fold(Self::NONE, |sum, block| Self {
+            bounds: sum.bounds.union(block.bounds),
+            area: sum.area + block.area,
+            degenerate: sum.degenerate + block.degenerate,
+        })
+    }
+}
+
 impl Prepared {
     /// Checks the arrays and builds the hierarchy.
     pub fn new(data: MeshData) -> Result<Self, InvalidShape> {
         data.check()?;
-        let mut bounds = Aabb::EMPTY;
-        let (mut area, mut degenerate) = (0.0, 0);
-        for facet in (0..data.triangles.len()).filter_map(|triangle| data.facet(triangle)) {
-            if facet.area() > 0.0 {
-                area += facet.area();
-                bounds = facet.corners.into_iter().fold(bounds, Aabb::with_point);
-            } else {
-                degenerate += 1;
-            }
-        }
+        let Extent { bounds, area, degenerate } = Extent::of(&data);
         if degenerate == data.triangles.len() {
             let message = format!("`triangles` must have an area, but all {degenerate} are degenerate");
             return Err(invalid("triangles", message));
@@ -80,12 +106,12 @@ impl Prepared {
         })
     }
 
-    /// Bytes on the heap.
+    /// Bytes on the heap without the hierarchy.
     pub fn heap_bytes(&self) -> usize {
         let MeshData { positions, triangles, normals, uvs } = &self.data;
         let arrays = size_of_val(positions.as_slice()) + size_of_val(triangles.as_slice());
         let optional = size_of_val(normals.as_slice()) + size_of_val(uvs.as_slice());
-        size_of::<Self>() + arrays + optional + self.bvh.bytes()
+        size_of::<Self>() + arrays + optional + size_of_val(self.areas.get().map_or(&[][..], Vec::as_slice))
     }
 }
 

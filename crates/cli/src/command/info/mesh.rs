@@ -1,0 +1,100 @@
+//! What is in a mesh file, what of it was left out or repaired, and how long it took to load.
+
+use super::{bounds_in_words, corners, memory_in_words, row};
+use crate::failure::Failure;
+use crate::format::bytes;
+use juggler::math::Aabb;
+use juggler::scene::import::{Imported, Limits, load};
+use juggler::tracer::shape::{Mesh, Shape};
+use serde_json::json;
+use std::path::Path;
+use std::time::Instant;
+
+/// A mesh file, loaded and made ready for tracing.
+pub struct Report<'n> {
+    name: &'n str,
+    file_bytes: u64,
+    vertices: usize,
+    triangles: usize,
+    normals: bool,
+    uvs: bool,
+    bounds: Aabb,
+    geometry_bytes: usize,
+    bvh_bytes: usize,
+    /// Seconds of reading the file.
+    load: f64,
+    /// Seconds of building the hierarchy.
+    build: f64,
+    warnings: Vec<String>,
+}
+
+impl<'n> Report<'n> {
+    /// Of the file of this name.
+    pub fn of(name: &'n str) -> Result<Self, Failure> {
+        let path = Path::new(name);
+        let start = Instant::now();
+        let Imported { mesh, mut warnings } = load(path, &Limits::default())?;
+        let load = start.elapsed().as_secs_f64();
+        let (vertices, normals, uvs) = (mesh.positions.len(), !mesh.normals.is_empty(), !mesh.uvs.is_empty());
+        let start = Instant::now();
+        let mut mesh = Mesh::from(mesh);
+        mesh.prepare().map_err(|invalid| Failure::Wrong(format!("`{name}` holds a mesh that cannot be: {invalid}")))?;
+        let build = start.elapsed().as_secs_f64();
+        warnings.extend(mesh.warnings());
+        Ok(Self {
+            name,
+            file_bytes: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
+            vertices,
+            triangles: mesh.triangles(),
+            normals,
+            uvs,
+            bounds: mesh.bounds(),
+            geometry_bytes: mesh.heap_bytes(),
+            bvh_bytes: mesh.bvh_bytes(),
+            load,
+            build,
+            warnings,
+        })
+    }
+
+    /// For people, or as one JSON object.
+    pub fn text(&self, json: bool) -> String {
+        if json { self.to_json() } else { self.to_words() }
+    }
+
+    fn to_words(&self) -> String {
+        let carried = [("normals", self.normals), ("surface coordinates", self.uvs)];
+        let carried: Vec<&str> = carried.into_iter().filter(|(_, is_there)| *is_there).map(|(what, _)| what).collect();
+        let carried = carried.join(", ");
+        let speed = self.file_bytes as f64 / 1e6 / self.load.max(1e-9);
+        let mut lines = vec![
+            self.name.to_owned(),
+            row("triangles", &self.triangles.to_string()),
+            row("vertices", &self.vertices.to_string()),
+            row("with", if carried.is_empty() { "positions only" } else { &carried }),
+            row("bounds", &bounds_in_words(&self.bounds)),
+            row("memory", &memory_in_words(self.geometry_bytes, self.bvh_bytes)),
+            row("file", &format!("{}, loaded in {:.3} s ({speed:.0} MB/s)", bytes(self.file_bytes), self.load)),
+            row("tree", &format!("built in {:.3} s", self.build)),
+        ];
+        lines.extend(self.warnings.iter().map(|warning| row("note", warning)));
+        lines.join("\n")
+    }
+
+    fn to_json(&self) -> String {
+        json!({
+            "version": 1,
+            "mesh": self.name,
+            "triangles": self.triangles,
+            "vertices": self.vertices,
+            "normals": self.normals,
+            "uvs": self.uvs,
+            "bounds": corners(&self.bounds),
+            "memory": {"geometry_bytes": self.geometry_bytes, "bvh_bytes": self.bvh_bytes},
+            "file_bytes": self.file_bytes,
+            "seconds": {"load": self.load, "build": self.build},
+            "warnings": self.warnings,
+        })
+        .to_string()
+    }
+}

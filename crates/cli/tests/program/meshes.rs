@@ -1,0 +1,79 @@
+//! Mesh files: what `info` says about them, and that objects share them.
+
+use crate::harness::Folder;
+use serde_json::Value;
+use std::fmt::Write;
+use std::fs;
+
+/// A floor of 2 * 32 * 32 triangles with one more that has no area.
+fn with_floor() -> Folder {
+    let folder = Folder::new();
+    let mut text = String::from("usemtl grey\n");
+    (0..33 * 33).for_each(|i| writeln!(text, "v {} 0 {}", i % 33, i / 33).unwrap());
+    for i in (0..32 * 33).filter(|i| i % 33 < 32) {
+        writeln!(text, "f {} {} {}\nf {} {} {}", i + 1, i + 34, i + 2, i + 2, i + 34, i + 35).unwrap();
+    }
+    text += "f 1 2 3\n";
+    fs::write(folder.path("floor.obj"), text).unwrap();
+    folder
+}
+
+#[test]
+fn info_of_a_mesh() {
+    let folder = with_floor();
+    let words = folder.good("info floor.obj").stdout;
+    for said in [
+        "triangles    2049\n",
+        "vertices     1089\n",
+        "with         positions only\n",
+        "bounds       [0, 0, 0] to [32, 0, 32]\n",
+        " shapes, ",
+        " MB/s)",
+        "note         ignored statements: 1 'usemtl'\n",
+        "note         1 degenerate triangle ignored\n",
+    ] {
+        assert!(words.contains(said), "{said}: {words}");
+    }
+    let json: Value = serde_json::from_str(&folder.good("info floor.obj --json").stdout).unwrap();
+    let keys: Vec<&String> = json.as_object().unwrap().keys().collect();
+    let expected = "version mesh triangles vertices normals uvs bounds memory file_bytes seconds warnings";
+    assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
+    assert_eq!((&json["triangles"], &json["uvs"]), (&2049.into(), &false.into()));
+    let arrays = 1089 * 12 + 2049 * 12;
+    let held = json["memory"]["geometry_bytes"].as_u64().unwrap();
+    assert!((arrays..arrays + 1000).contains(&held), "{held}");
+    assert!(json["memory"]["bvh_bytes"].as_u64().unwrap() > 2048 * 36, "{json}");
+}
+
+#[test]
+fn a_mesh_that_cannot_be_read() {
+    let folder = Folder::new();
+    fs::write(folder.path("broken.ply"), "ply\nformat ascii 1.0\nelement x\n").unwrap();
+    assert!(folder.bad("info broken.ply", 2).contains("cannot read `broken.ply`: line 3: expected the number of rows"));
+    fs::write(folder.path("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n").unwrap();
+    assert!(folder.bad("info flat.obj", 2).contains("all 1 are degenerate"));
+    fs::create_dir(folder.path("folder.stl")).unwrap();
+    folder.bad("info folder.stl", 3);
+    folder.bad("info none.stl", 3);
+}
+
+#[test]
+fn objects_share_a_mesh_and_its_hierarchy() {
+    let folder = with_floor();
+    fs::create_dir(folder.path("sub")).unwrap();
+    let memory = |files: &[&str]| {
+        let object = |file: &&str| format!(r#"{{"shape": {{"mesh": {{"file": "{file}"}}}}}}"#);
+        let objects: Vec<String> = files.iter().map(object).collect();
+        fs::write(folder.path("s.json"), format!(r#"{{"version": 1, "objects": [{}]}}"#, objects.join(", "))).unwrap();
+        let run = folder.run("info s.json --json");
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let json: Value = serde_json::from_str(&run.stdout).unwrap();
+        assert_eq!(json["geometry"]["triangles"], 2049 * files.len());
+        ["geometry_bytes", "bvh_bytes"].map(|key| json["memory"][key].as_u64().unwrap())
+    };
+    let one = memory(&["floor.obj"]);
+    let many = memory(&["floor.obj", "./floor.obj", "sub/../floor.obj", "floor.obj"]);
+    for (one, many) in one.into_iter().zip(many) {
+        assert!(one > 25_000 && many < one + 4000, "{one} {many}");
+    }
+}
