@@ -1,7 +1,6 @@
-//! Objects as tracing sees them: spheres in world space, everything else in its own.
+//! Objects as tracing sees them: spheres in their level's space, everything else in its own.
 
-use super::Object;
-use crate::material::MaterialTable;
+use super::{Content, Object, WorldHit};
 use crate::shape::{AnyShape, Hit, intersect_sphere, sphere_surface};
 use crate::surface::Surface;
 use juggler_math::{Ray, Transform, Vec3};
@@ -10,54 +9,70 @@ use juggler_math::{Ray, Transform, Vec3};
 #[derive(Clone, Debug)]
 pub struct Placed {
     pub object: Object,
-    /// Centre and radius in the world, for a sphere that is still one there.
+    /// Centre and radius in the level's space, for a sphere that is still one there.
     sphere: Option<(Vec3, f32)>,
-    /// The material is the same everywhere: nobody asks for surface coordinates.
-    plain: bool,
-    /// Object space is world space, as for most grounds.
+    /// Object space is the level's space, as for most grounds.
     unmoved: bool,
 }
 
 impl Placed {
-    pub fn new(object: Object, materials: &MaterialTable) -> Self {
-        let sphere = match (&object.shape, object.transform.uniform_scale()) {
-            (AnyShape::Sphere(sphere), Some(scale)) => Some((object.transform.origin(), sphere.radius * scale)),
+    pub fn new(object: Object) -> Self {
+        let sphere = match (&object.content, object.transform.uniform_scale()) {
+            (Content::Shape(shape), Some(scale)) => match &**shape {
+                AnyShape::Sphere(sphere) => Some((object.transform.origin(), sphere.radius * scale)),
+                _ => None,
+            },
             _ => None,
         };
-        let plain = !materials.is_textured(object.material);
         let unmoved = object.transform == Transform::IDENTITY;
-        Self { object, sphere, plain, unmoved }
+        Self { object, sphere, unmoved }
     }
 
-    /// The nearest hit in the ray's range.
-    #[inline]
-    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        match self.sphere {
-            Some((center, radius)) => intersect_sphere(center, radius, ray),
-            None if self.unmoved => self.object.shape.intersect(ray),
-            None => self.object.shape.intersect(&self.object.transform.ray_to_local(ray)),
+    /// The ray in the object's space.
+    #[inline(always)]
+    fn local(&self, ray: &Ray) -> Ray {
+        if self.unmoved { *ray } else { self.object.transform.ray_to_local(ray) }
+    }
+
+    /// Keeps the nearest hit in the ray's range if it is better than `best`. `number` is that of the object's first
+    /// shape.
+    #[inline(never)]
+    pub fn closest(&self, ray: &mut Ray, number: u32, best: &mut WorldHit) {
+        let hit = match (&self.object.content, self.sphere) {
+            (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
+            (Content::Shape(shape), None) => shape.intersect(&self.local(ray)),
+            (Content::Level(level), _) => {
+                let mut local = self.local(ray);
+                level.closest(&mut local, number, best);
+                ray.t_max = local.t_max;
+                return;
+            }
+        };
+        if let Some(hit) = hit {
+            best.keep(hit, number, ray);
         }
     }
 
     /// Whether anything is hit in the ray's range.
     #[inline]
     pub fn occludes(&self, ray: &Ray) -> bool {
-        match self.sphere {
-            Some((center, radius)) => intersect_sphere(center, radius, ray).is_some(),
-            None if self.unmoved => self.object.shape.occludes(ray),
-            None => self.object.shape.occludes(&self.object.transform.ray_to_local(ray)),
+        match (&self.object.content, self.sphere) {
+            (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
+            (Content::Shape(shape), None) => shape.occludes(&self.local(ray)),
+            (Content::Level(level), _) => level.occludes(&self.local(ray)),
         }
     }
 
-    /// The surface at a hit, world space.
+    /// The surface at a hit of this object's `shape`, in the level's space. Surface coordinates may be left out
+    /// where a material is `plain`, the same everywhere.
     #[inline(always)]
-    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+    pub fn surface(&self, shape: &AnyShape, ray: &Ray, hit: &Hit, plain: bool) -> Surface {
         match self.sphere {
-            Some((center, radius)) if self.plain => sphere_surface(center, radius, ray, hit),
-            None if self.unmoved => self.object.shape.surface(ray, hit),
+            Some((center, radius)) if plain => sphere_surface(center, radius, ray, hit),
+            None if self.unmoved => shape.surface(ray, hit),
             _ => {
                 let transform = &self.object.transform;
-                self.object.shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
+                shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
             }
         }
     }
@@ -67,36 +82,42 @@ impl Placed {
 /// matter.
 #[derive(Clone, Copy, Debug)]
 pub enum Item {
-    /// A sphere that is still one in the world.
+    /// A sphere that is still one in the level's space.
     Sphere {
-        /// World space.
+        /// Level's space.
         center: Vec3,
-        /// World space.
+        /// Level's space.
         radius: f32,
-        /// Number of the object.
-        object: u32,
+        /// Number of the shape.
+        number: u32,
     },
     /// Anything else.
     Other {
-        /// Number of the object.
-        object: u32,
+        /// Place of the object in its level.
+        place: u32,
+        /// Number of its first shape.
+        number: u32,
     },
 }
 
 impl Item {
-    pub fn new(placed: &Placed, object: u32) -> Self {
+    pub fn new(placed: &Placed, place: u32, number: u32) -> Self {
         match placed.sphere {
-            Some((center, radius)) => Self::Sphere { center, radius, object },
-            None => Self::Other { object },
+            Some((center, radius)) => Self::Sphere { center, radius, number },
+            None => Self::Other { place, number },
         }
     }
 
-    /// The nearest hit in the ray's range, and the number of the object.
+    /// Keeps the nearest hit in the ray's range if it is better than `best`; `first` is added to the number.
     #[inline(always)]
-    pub fn intersect(&self, objects: &[Placed], ray: &Ray) -> Option<(Hit, u32)> {
+    pub fn closest(&self, objects: &[Placed], ray: &mut Ray, first: u32, best: &mut WorldHit) {
         match *self {
-            Self::Sphere { center, radius, object } => Some((intersect_sphere(center, radius, ray)?, object)),
-            Self::Other { object } => Some((objects[object as usize].intersect(ray)?, object)),
+            Self::Sphere { center, radius, number } => {
+                if let Some(hit) = intersect_sphere(center, radius, ray) {
+                    best.keep(hit, first + number, ray);
+                }
+            }
+            Self::Other { place, number } => objects[place as usize].closest(ray, first + number, best),
         }
     }
 
@@ -105,7 +126,7 @@ impl Item {
     pub fn occludes(&self, objects: &[Placed], ray: &Ray) -> bool {
         match *self {
             Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
-            Self::Other { object } => objects[object as usize].occludes(ray),
+            Self::Other { place, .. } => objects[place as usize].occludes(ray),
         }
     }
 }
