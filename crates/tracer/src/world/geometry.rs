@@ -39,7 +39,7 @@ impl Geometry {
         for level in levels(top) {
             geometry.bvh_bytes += level.bvh.bytes();
             geometry.geometry_bytes += size_of_val(level.objects.as_slice()) + size_of_val(level.items.as_slice());
-            let shapes = level.objects.iter().filter_map(|placed| placed.object.content.as_shape());
+            let shapes = level.objects.iter().filter_map(|placed| placed.content.as_shape());
             shapes.for_each(|shape| stored.add(shape));
         }
         geometry.unique_triangles = stored.triangles;
@@ -84,7 +84,7 @@ pub fn levels(top: &Level) -> Vec<&Level> {
             continue;
         }
         for placed in &level.objects {
-            if let Content::Level(below) = &placed.object.content
+            if let Content::Level(below) = &placed.content
                 && seen.insert(Arc::as_ptr(below).addr())
             {
                 found.push(below);

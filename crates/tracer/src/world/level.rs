@@ -2,10 +2,9 @@
 //! and placed many times.
 
 use super::items::{Item, Placed};
-use super::{Content, Object, WorldHit};
+use super::large::{self, Large, Order};
+use super::{Content, Object, Vertex, WorldHit};
 use crate::material::{MaterialId, MaterialTable};
-use crate::shape::Hit;
-use crate::surface::Surface;
 use juggler_bvh::{Bvh, Quality};
 use juggler_math::{Aabb, Ray, Transform};
 
@@ -29,6 +28,8 @@ pub struct Level {
     /// Bounded objects in the hierarchy's order.
     pub(super) items: Vec<Item>,
     pub(super) bvh: Bvh,
+    /// Large meshes beside the hierarchy, in the world's own level only: others are met by one ray at a time.
+    pub(super) large: Vec<Large>,
     /// Places of the objects without an end.
     pub(super) unbounded: Vec<u32>,
     bounds: Aabb,
@@ -72,21 +73,31 @@ impl Level {
     /// Builds the hierarchy over all bounded objects. At most [`MAX_OBJECTS`] shapes and [`MAX_DEPTH`] levels below
     /// each other, which whoever makes levels from files must see to.
     pub fn new(objects: Vec<Object>) -> Self {
+        Self::beside(objects, &[])
+    }
+
+    /// The world's own level.
+    pub(super) fn top(objects: Vec<Object>) -> Self {
+        let large = large::places(&objects);
+        Self::beside(objects, &large)
+    }
+
+    /// The objects at the places `large` stand beside the hierarchy.
+    fn beside(objects: Vec<Object>, large: &[u32]) -> Self {
         let totals = Totals::of(&objects);
         debug_assert!(totals.shapes <= MAX_OBJECTS && totals.depth <= MAX_DEPTH);
         let firsts = if totals.instances == 0 { Vec::new() } else { firsts(&objects) };
-        let (bounded, unbounded): (Vec<u32>, Vec<u32>) =
-            (0..objects.len() as u32).partition(|i| objects[*i as usize].is_bounded());
-        let boxes: Vec<Aabb> = bounded.iter().map(|i| objects[*i as usize].bounds()).collect();
-        let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+        let number = |place: u32| firsts.get(place as usize).copied().unwrap_or(place);
+        let places = (0..objects.len() as u32).filter(|place| !large.contains(place));
+        let (bounded, unbounded): (Vec<u32>, Vec<u32>) = places.partition(|i| objects[*i as usize].is_bounded());
+        let boxes: Vec<Aabb> = bounded.iter().map(|place| objects[*place as usize].bounds()).collect();
         let bvh = Bvh::build(&boxes, Quality::Balanced);
-        let objects: Vec<Placed> = objects.into_iter().map(Placed::new).collect();
-        let item = |position: &u32| {
-            let place = bounded[*position as usize];
-            Item::new(&objects[place as usize], place, firsts.get(place as usize).copied().unwrap_or(place))
-        };
-        let items = bvh.order().iter().map(item).collect();
-        Self { objects, firsts, items, bvh, unbounded, bounds, totals }
+        let order = bvh.order().iter().map(|position| bounded[*position as usize]);
+        let items = order.map(|place| Item::new(&objects[place as usize], place, number(place))).collect();
+        let large = large.iter().map(|place| Large::new(&objects[*place as usize], *place, number(*place))).collect();
+        let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+        let objects = objects.into_iter().map(Placed::new).collect();
+        Self { objects, firsts, items, bvh, large, unbounded, bounds, totals }
     }
 
     /// A box around everything in it that has an end; empty when nothing has.
@@ -120,47 +131,48 @@ impl Level {
         (&self.objects[place], number - self.firsts[place])
     }
 
-    /// The surface at a hit in this level's space, and what it is made of; `inherited` where it does not say.
+    /// What a ray met, in this level's space, by the shape's `number` in it; made of `inherited` where nothing says.
     #[inline(always)]
-    pub(super) fn surface(
+    pub(super) fn vertex(
         &self,
         ray: &Ray,
-        hit: &Hit,
+        hit: &WorldHit,
         number: u32,
         inherited: Option<MaterialId>,
         materials: &MaterialTable,
-    ) -> (Surface, MaterialId) {
+    ) -> Vertex {
         let (placed, number) = self.find(number);
-        let material = placed.object.material.or(inherited);
-        match &placed.object.content {
+        let material = placed.material.or(inherited);
+        match &placed.content {
             Content::Shape(shape) => {
                 let material = material.unwrap_or(MaterialId::NONE);
-                (placed.surface(shape, ray, hit, !materials.is_textured(material)), material)
+                let surface = placed.surface(shape, ray, &hit.hit, !materials.is_textured(material));
+                Vertex { surface, material, object: hit.object }
             }
-            Content::Level(level) => level.instanced(&placed.object.transform, ray, hit, number, material, materials),
+            Content::Level(level) => level.instanced(&placed.transform, ray, hit, number, material, materials),
         }
     }
 
-    /// [`Level::surface`] seen through the transform of an instance.
+    /// [`Level::vertex`] seen through the transform of an instance.
     #[inline(never)]
     fn instanced(
         &self,
         transform: &Transform,
         ray: &Ray,
-        hit: &Hit,
+        hit: &WorldHit,
         number: u32,
         inherited: Option<MaterialId>,
         materials: &MaterialTable,
-    ) -> (Surface, MaterialId) {
-        let (surface, material) = self.surface(&transform.ray_to_local(ray), hit, number, inherited, materials);
-        (surface.to_world(transform), material)
+    ) -> Vertex {
+        let vertex = self.vertex(&transform.ray_to_local(ray), hit, number, inherited, materials);
+        Vertex { surface: vertex.surface.to_world(transform), ..vertex }
     }
 
     /// The nearest hit of one ray that goes through an instance of this level, which keeps it if it is better than
     /// `best`. `first` is the number of the level's first shape.
     #[inline(never)]
     pub(super) fn closest(&self, ray: &mut Ray, first: u32, best: &mut WorldHit) {
-        self.closest_batch(std::slice::from_mut(ray), first, std::slice::from_mut(best));
+        self.improve(std::slice::from_mut(ray), Order::Any, first, std::slice::from_mut(best));
     }
 }
 

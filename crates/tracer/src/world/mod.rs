@@ -11,6 +11,7 @@ use std::borrow::Cow;
 
 mod geometry;
 mod items;
+mod large;
 mod level;
 mod object;
 mod trace;
@@ -106,10 +107,9 @@ impl World {
         lights: Vec<AnyLight>,
         background: AnyBackground,
     ) -> Self {
-        let top = Level::new(objects);
+        let top = Level::top(objects);
         let objects = geometry::levels(&top).into_iter().flat_map(|level| &level.objects);
-        let has_transparency =
-            objects.filter_map(|placed| placed.object.material).any(|id| materials.is_transparent(id));
+        let has_transparency = objects.filter_map(|placed| placed.material).any(|id| materials.is_transparent(id));
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
         let lamps = lights.into_iter().filter(|light| light.ambient().is_black()).map(Lamp::new).collect();
         Self { top, materials, lamps, ambient, background, has_transparency }
@@ -144,8 +144,7 @@ impl World {
     /// The surface where `ray` made `hit`.
     #[inline(always)]
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
-        let (surface, material) = self.top.surface(ray, &hit.hit, hit.object, None, &self.materials);
-        Vertex { surface, material, object: hit.object }
+        self.top.vertex(ray, hit, hit.object, None, &self.materials)
     }
 
     /// Counts for reports.

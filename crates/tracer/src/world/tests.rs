@@ -4,7 +4,7 @@ use super::items::Placed;
 use super::*;
 use crate::background::Solid;
 use crate::material::{MaterialCompiler, MaterialRef, Resolver};
-use crate::shape::{AnyShape, Plane, Sphere};
+use crate::shape::{AnyShape, Mesh, MeshData, Plane, Sphere};
 use crate::texture::TextureTable;
 use juggler_math::Transform;
 use juggler_math::testing::Random;
@@ -70,7 +70,7 @@ fn nested(random: &mut Random) -> World {
 /// The same shapes without any level: transforms joined, materials inherited.
 fn expanded(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>) -> Vec<Object> {
     let expand = |placed: &Placed| {
-        let Object { content, transform, material } = &placed.object;
+        let Placed { content, transform, material, .. } = placed;
         let (transform, material) = (transform.then(parent), material.or(inherited));
         match content {
             Content::Shape(_) => vec![Object { content: content.clone(), transform, material }],
@@ -83,7 +83,7 @@ fn expanded(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId
 /// Every shape asked in turn, its number counted one by one.
 fn brute_force(objects: &[Placed], ray: &Ray, next: &mut u32, best: &mut WorldHit) {
     for placed in objects {
-        match &placed.object.content {
+        match &placed.content {
             Content::Shape(_) => {
                 let mut alone = WorldHit::NONE;
                 placed.closest(&mut ray.up_to(best.hit.t.min(ray.t_max)), *next, &mut alone);
@@ -93,7 +93,7 @@ fn brute_force(objects: &[Placed], ray: &Ray, next: &mut u32, best: &mut WorldHi
                 *next += 1;
             }
             Content::Level(level) => {
-                brute_force(&level.objects, &placed.object.transform.ray_to_local(ray), next, best);
+                brute_force(&level.objects, &placed.transform.ray_to_local(ray), next, best);
             }
         }
     }
@@ -149,6 +149,39 @@ fn hierarchy_equals_brute_force_one_by_one_in_batches_and_in_packets() {
 #[test]
 fn instances_equal_brute_force() {
     equals_brute_force(&nested(&mut Random::new(19)), 300);
+}
+
+/// A wavy square of 1,152 triangles.
+fn large_mesh() -> AnyShape {
+    const SIDE: u32 = 24;
+    let corner = |i: u32| Vec2::new((i % (SIDE + 1)) as f32, (i / (SIDE + 1)) as f32) / SIDE as f32 - 0.5;
+    let position = |at: Vec2| Vec3::new(20.0 * at.x, 60.0 * at.x * at.y, 20.0 * at.y);
+    let square = |i: u32| {
+        let first = i % SIDE + i / SIDE * (SIDE + 1);
+        [[first, first + SIDE + 1, first + 1], [first + 1, first + SIDE + 1, first + SIDE + 2]]
+    };
+    let positions = (0..(SIDE + 1).pow(2)).map(corner).map(position).collect();
+    let triangles = (0..SIDE * SIDE).flat_map(square).collect();
+    let mut mesh = AnyShape::from(Mesh::from(MeshData { positions, triangles, ..MeshData::default() }));
+    mesh.prepare().unwrap();
+    mesh
+}
+
+/// Few large meshes stand beside the hierarchy, many in it; two in the same place tie everywhere.
+#[test]
+fn large_meshes_equal_brute_force() {
+    let mut random = Random::new(23);
+    let mesh = large_mesh();
+    for (count, beside) in [(2, 3), (3, 4), (6, 0)] {
+        let mut objects = crowd(&mut random, 1, Some(MaterialId(0)));
+        for _ in 0..count {
+            objects.insert(objects.len() / 2, Object::new(mesh.clone(), random.transform(), MaterialId(1)));
+        }
+        objects.push(objects[objects.len() / 2].clone());
+        let world = world_of(objects);
+        assert_eq!(world.top.large.len(), beside);
+        equals_brute_force(&world, 200);
+    }
 }
 
 /// Numbers and materials are the same to the bit, distances and surfaces up to the rounding of transforms.

@@ -1,5 +1,6 @@
 //! The questions that rays ask: what is nearest, is anything in the way, how much light gets through.
 
+use super::large::Order;
 use super::{Level, World, WorldHit};
 use juggler_bvh::Leaf;
 use juggler_math::{Ray, Rgb};
@@ -32,46 +33,41 @@ impl Leaf for Nearest<'_> {
 }
 
 impl Level {
-    /// Improves on `hits` with the nearest hits of rays that go much the same way as their neighbours. `first` is
-    /// the number of this level's first shape.
-    pub(super) fn closest_packet(&self, rays: &mut [Ray], first: u32, hits: &mut [WorldHit]) {
-        self.closest_unbounded(rays, first, hits);
-        self.bvh.closest_packet(rays, &mut Nearest { level: self, first, hits });
-    }
-
-    /// Improves on `hits` with the nearest hits of rays in no order.
-    pub(super) fn closest_batch(&self, rays: &mut [Ray], first: u32, hits: &mut [WorldHit]) {
-        self.closest_unbounded(rays, first, hits);
-        self.bvh.closest_batch(rays, &mut Nearest { level: self, first, hits });
-    }
-
-    fn closest_unbounded(&self, rays: &mut [Ray], first: u32, hits: &mut [WorldHit]) {
+    /// Improves on `hits` with the nearest hits. `first` is the number of this level's first shape.
+    #[inline]
+    pub(super) fn improve(&self, rays: &mut [Ray], order: Order, first: u32, hits: &mut [WorldHit]) {
         for place in &self.unbounded {
             let (placed, number) = (&self.objects[*place as usize], first + self.first(*place));
             for (ray, best) in rays.iter_mut().zip(&mut *hits) {
                 placed.closest(ray, number, best);
             }
         }
-    }
-
-    /// Whether each of the rays, which go much the same way as their neighbours, meets anything.
-    fn any_packet(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.bvh.any_packet(rays, occluded, &mut Nearest { level: self, first: 0, hits: &mut [] });
-        self.any_unbounded(rays, occluded);
+        let mut nearest = Nearest { level: self, first, hits };
+        match order {
+            Order::Coherent => self.bvh.closest_packet(rays, &mut nearest),
+            Order::Any => self.bvh.closest_batch(rays, &mut nearest),
+        }
+        for large in &self.large {
+            large.closest(&self.objects, rays, order, hits);
+        }
     }
 
     /// Whether each of the rays meets anything.
-    fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.bvh.any_batch(rays, occluded, &mut Nearest { level: self, first: 0, hits: &mut [] });
-        self.any_unbounded(rays, occluded);
-    }
-
-    fn any_unbounded(&self, rays: &[Ray], occluded: &mut [bool]) {
+    #[inline]
+    fn any(&self, rays: &[Ray], order: Order, occluded: &mut [bool]) {
+        let mut nearest = Nearest { level: self, first: 0, hits: &mut [] };
+        match order {
+            Order::Coherent => self.bvh.any_packet(rays, occluded, &mut nearest),
+            Order::Any => self.bvh.any_batch(rays, occluded, &mut nearest),
+        }
         for place in &self.unbounded {
             let placed = &self.objects[*place as usize];
             for (ray, occluded) in rays.iter().zip(&mut *occluded) {
                 *occluded = *occluded || placed.occludes(ray);
             }
+        }
+        for large in &self.large {
+            large.any(&self.objects, rays, order, occluded);
         }
     }
 
@@ -79,7 +75,7 @@ impl Level {
     #[inline(never)]
     pub(super) fn occludes(&self, ray: &Ray) -> bool {
         let mut occluded = [false];
-        self.any_batch(std::slice::from_ref(ray), &mut occluded);
+        self.any(std::slice::from_ref(ray), Order::Any, &mut occluded);
         occluded[0]
     }
 }
@@ -88,13 +84,13 @@ impl World {
     /// The nearest hits of any number of rays that go much the same way as their neighbours.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
         hits.fill(WorldHit::NONE);
-        self.top.closest_packet(rays, 0, hits);
+        self.top.improve(rays, Order::Coherent, 0, hits);
     }
 
     /// The nearest hits of any number of rays, in no order.
     pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
         hits.fill(WorldHit::NONE);
-        self.top.closest_batch(rays, 0, hits);
+        self.top.improve(rays, Order::Any, 0, hits);
     }
 
     /// The nearest hit of one ray, whose end is drawn in to it.
@@ -107,28 +103,25 @@ impl World {
     /// How much of a light's radiance comes through along each of any number of rays that go much the same way
     /// as their neighbours.
     pub fn transmittance_packet(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, Level::any_packet);
+        self.transmittance(rays, through, Order::Coherent);
     }
 
     /// How much of a light's radiance comes through along each of any number of rays.
     pub fn transmittance_batch(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, Level::any_batch);
+        self.transmittance(rays, through, Order::Any);
     }
 
-    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], any: impl Fn(&Level, &[Ray], &mut [bool])) {
+    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], order: Order) {
         if self.has_transparency {
             for (ray, through) in rays.iter().zip(through) {
                 *through = self.filtered(*ray);
             }
             return;
         }
-        const CHUNK: usize = 256;
-        for (rays, through) in rays.chunks(CHUNK).zip(through.chunks_mut(CHUNK)) {
-            let mut occluded = [false; CHUNK];
-            any(&self.top, rays, &mut occluded[..rays.len()]);
-            for (occluded, through) in occluded.iter().zip(through) {
-                *through = if *occluded { Rgb::BLACK } else { Rgb::WHITE };
-            }
+        let mut occluded = vec![false; rays.len()];
+        self.top.any(rays, order, &mut occluded);
+        for (occluded, through) in occluded.iter().zip(through) {
+            *through = if *occluded { Rgb::BLACK } else { Rgb::WHITE };
         }
     }
 
