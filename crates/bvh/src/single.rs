@@ -125,18 +125,20 @@ impl Bvh {
     }
 }
 
-/// One of the children that are met; the others go onto the stack.
+/// The largest of the children that are met, which the builder puts last: it most likely holds a hit. The others go
+/// onto the stack.
 #[inline(always)]
-pub(crate) fn first(node: &Node, mask: u32, stack: &mut Stack) -> Option<Child> {
+pub(crate) fn first(node: &Node, mut mask: u32, stack: &mut Stack) -> Option<Child> {
     if mask == 0 {
         return None;
     }
-    let mut more = mask & (mask - 1);
-    while more != 0 {
-        stack.push(entry(0.0, node.children[more.trailing_zeros() as usize & 7].0));
-        more &= more - 1;
+    let last = mask.ilog2();
+    mask ^= 1 << last;
+    while mask != 0 {
+        stack.push(entry(0.0, node.children[mask.trailing_zeros() as usize & 7].0));
+        mask &= mask - 1;
     }
-    Some(node.children[mask.trailing_zeros() as usize & 7])
+    Some(node.children[last as usize & 7])
 }
 
 /// The next child on the stack that is entered before `t_max`.

@@ -49,9 +49,10 @@ struct RayCounts {
 
 #[derive(Debug, Serialize)]
 struct Geometry {
-    shapes: usize,
-    triangles: usize,
-    instances: usize,
+    shapes: u64,
+    triangles: u64,
+    unique_triangles: u64,
+    instances: u64,
     lights: usize,
 }
 
@@ -91,7 +92,8 @@ impl<'s> Stats<'s> {
             geometry: Geometry {
                 shapes: geometry.shapes,
                 triangles: geometry.triangles,
-                instances: 0,
+                unique_triangles: geometry.unique_triangles,
+                instances: geometry.instances,
                 lights: geometry.lights,
             },
             memory: Memory {

@@ -22,7 +22,7 @@ fn chess_has_the_primitives_lights_and_cameras_of_its_model() {
     let description = &scene.description;
     let geometry = Picture::new(&scene, &Settings::default()).unwrap().world().geometry();
     // A mesh is one shape; the engine counted its triangles.
-    let solids = geometry.shapes - meshes(&description.objects, description);
+    let solids = geometry.shapes - meshes(&description.objects, description) as u64;
     assert_eq!((solids, geometry.triangles), (48, 332));
     assert_eq!((solids + geometry.triangles, geometry.lights), (380, 5));
     assert_eq!(description.cameras.keys().collect::<Vec<_>>(), ["camera1", "camera2"]);

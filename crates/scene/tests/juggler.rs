@@ -8,6 +8,7 @@ use juggler_scene::Scene;
 use juggler_scene::compile::{Assembly, Files, Library};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::shape::AnyShape;
+use juggler_tracer::world::Object;
 use std::f64::consts::TAU;
 
 const NEAR: f64 = 2e-4;
@@ -18,14 +19,18 @@ fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     let library = Library::default();
     let (assembly, findings) = Assembly::of(&scene.description, Files { origin: None, library: &library });
     assert!(findings.is_empty(), "{findings:?}");
-    let ground = assembly.objects.iter().filter(|object| matches!(object.shape, AnyShape::Plane(_))).count();
+    let shape = |object: &Object| object.content.as_shape().unwrap().as_ref().clone();
+    let ground = assembly.objects.iter().filter(|object| matches!(shape(object), AnyShape::Plane(_))).count();
     assert_eq!((assembly.objects.len(), ground), (85, 1));
     assert!(matches!(&assembly.background, AnyBackground::Dome(sky) if sky.radius == 1e6));
-    let sphere = |shape: &AnyShape| if let AnyShape::Sphere(sphere) = shape { Some(sphere.radius) } else { None };
+    let sphere = |object: &Object| match shape(object) {
+        AnyShape::Sphere(sphere) => Some(f64::from(sphere.radius)),
+        _ => None,
+    };
     let placed = assembly
         .objects
         .iter()
-        .filter_map(|object| Some((object.transform.point(Vec3::ZERO).as_dvec3(), f64::from(sphere(&object.shape)?))));
+        .filter_map(|object| Some((object.transform.point(Vec3::ZERO).as_dvec3(), sphere(object)?)));
     placed.collect()
 }
 

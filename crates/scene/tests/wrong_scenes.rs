@@ -34,6 +34,27 @@ fn object(object: &str) -> String {
     format!("{{\n  \"version\": 1,\n  \"objects\": [\n    {object}\n  ]\n}}")
 }
 
+/// A hundred thousand objects.
+const CHAIN: &str = r#"{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [1, 0, 0], "radius": 1}, "count": 100000}}"#;
+
+/// Ten times a group.
+fn ten(group: &str) -> String {
+    vec![format!("{{\"group\": \"{group}\"}}"); 10].join(", ")
+}
+
+/// A scene of groups with these objects; the last are those of the scene.
+fn groups(groups: &[(&str, &str)]) -> String {
+    let lines: Vec<String> = groups.iter().map(|(name, objects)| format!("  \"{name}\": [{objects}]")).collect();
+    let (last, groups) = lines.split_last().unwrap();
+    format!("{{\"version\": 1, \"groups\": {{\n{}}},\n{last}}}", groups.join(",\n"))
+}
+
+/// Seventy groups, each in the one before, written from the innermost on; then the name of one that holds no other.
+fn chain_of_groups() -> String {
+    let group = |i: u32| format!("\"g{i}\": [{{\"group\": \"g{}\"}}], ", i + 1);
+    (0..70).rev().map(group).collect::<String>() + "\"g70\""
+}
+
 macro_rules! wrong {
     ($($name:ident: $text:expr;)+) => { $(
         #[test]
@@ -73,7 +94,9 @@ wrong! {
     group_in_itself: "{\"version\": 1, \"groups\": {\"a\": [{\"group\": \"a\"}]}, \"objects\": []}";
     material_circle: with(r#""materials": {"a": {"checkerboard": {"even": "a", "odd": "a"}}}"#);
     chain_too_long: object(r#"{"objects": [{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [1, 0, 0], "radius": 1}, "count": 100001}}]}"#);
-    too_many_objects: object(r#"{"objects": [{"group": "a"}]}"#).replace("\"objects\": [\n", "\"groups\": {\"z\": [{\"shape\": \"sphere\"}], \"b\": [{\"chain\": {\"from\": {\"center\": [0, 0, 0], \"radius\": 1}, \"to\": {\"center\": [1, 0, 0], \"radius\": 1}, \"count\": 100000}}],\n    \"a\": [{\"group\": \"b\"}, {\"group\": \"c\"}], \"c\": [{\"group\": \"d\"}, {\"group\": \"d\"}, {\"group\": \"d\"}],\n    \"d\": [{\"group\": \"e\"}, {\"group\": \"e\"}, {\"group\": \"e\"}, {\"group\": \"e\"}], \"e\": [{\"group\": \"b\"}, {\"group\": \"b\"}, {\"group\": \"b\"}, {\"group\": \"b\"}]},\n  \"objects\": [\n");
+    too_many_objects: groups(&[("b", CHAIN), ("c", &ten("b")), ("d", &ten("c")), ("e", &ten("d")), ("a", &ten("e")), ("objects", &ten("a"))]);
+    too_many_objects_in_memory: object(&[CHAIN; 41].join(",\n"));
+    groups_nested_too_deep: groups(&[("g70", CHAIN), ("objects", r#"{"group": "g0"}"#)]).replace("\"g70\"", &chain_of_groups());
     missing_mesh: object(r#"{"shape": {"mesh": {"file": "models/cow.ply"}}}"#);
     mesh_from_nothing: object(r#"{"shape": {"mesh": {}}}"#);
     missing_version: r#"{"objects": [{"shape": "sphere"}]}"#;

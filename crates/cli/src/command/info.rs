@@ -10,6 +10,7 @@ use clap::Args;
 use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Scene, import};
+use juggler::tracer::world::Geometry;
 use serde_json::{Map, Value, json};
 use std::fs::File;
 use std::io::Read;
@@ -87,7 +88,10 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("picture", format!("{width}x{height}, {}", counted(settings.samples.into(), "sample")));
     row("integrator", settings.integrator.name().into());
     row("shapes", geometry.shapes.to_string());
-    row("triangles", geometry.triangles.to_string());
+    row("triangles", triangles_in_words(&geometry));
+    if geometry.instances > 0 {
+        row("instances", geometry.instances.to_string());
+    }
     row("lights", geometry.lights.to_string());
     row("materials", description.materials.len().to_string());
     row("textures", description.textures.len().to_string());
@@ -97,6 +101,16 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     let animation = &description.animation;
     row("animation", length(animation.frames, animation.frames_per_second));
     lines.join("\n")
+}
+
+/// `1000000, 1000 of them stored`.
+fn triangles_in_words(geometry: &Geometry) -> String {
+    let Geometry { triangles, unique_triangles, .. } = *geometry;
+    if triangles == unique_triangles {
+        triangles.to_string()
+    } else {
+        format!("{triangles}, {unique_triangles} of them stored")
+    }
 }
 
 /// `30 frames, 1.25 s`.
@@ -135,7 +149,13 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "size": settings.size,
         "samples": settings.samples,
         "integrator": settings.integrator.name(),
-        "geometry": {"shapes": geometry.shapes, "triangles": geometry.triangles, "instances": 0, "lights": geometry.lights},
+        "geometry": {
+            "shapes": geometry.shapes,
+            "triangles": geometry.triangles,
+            "unique_triangles": geometry.unique_triangles,
+            "instances": geometry.instances,
+            "lights": geometry.lights,
+        },
         "materials": description.materials.len(),
         "textures": description.textures.len(),
         "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),

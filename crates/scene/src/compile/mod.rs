@@ -17,7 +17,7 @@ mod meshes;
 mod placing;
 mod settings;
 
-pub use count::MAX_OBJECTS;
+pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub use meshes::{Files, Library};
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
 
@@ -54,8 +54,8 @@ impl Assembly {
         settings::check(&scene.render, &mut findings);
         settings::check_light(scene, &mut findings);
         let mut materials = materials::Materials::new(scene, &mut findings);
-        let objects = match count::check(scene) {
-            Ok(()) => placing::place(scene, files, &mut materials, &mut findings),
+        let objects = match count::count(scene) {
+            Ok(counts) => placing::place(scene, &counts, files, &mut materials, &mut findings),
             Err(problems) => {
                 findings.extend(problems);
                 Vec::new()
@@ -80,8 +80,7 @@ impl Assembly {
 
 /// A box around all objects that have an end.
 fn bounds(objects: &[Object]) -> Aabb {
-    let boxes = objects.iter().map(|object| object.transform.aabb(&object.shape.bounds()));
-    let bounds = boxes.filter(Aabb::is_finite).fold(Aabb::EMPTY, |all, one| all.union(one));
+    let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
     if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
 }
 

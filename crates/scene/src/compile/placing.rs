@@ -1,5 +1,6 @@
-//! Objects in their places: groups expanded, transforms joined, materials inherited.
+//! Objects in their places: groups expanded or shared, transforms joined, materials inherited.
 
+use super::count::Counts;
 use super::materials::Materials;
 use super::meshes::Files;
 use crate::description::{Bead, Description, Object, TransformStep};
@@ -8,12 +9,14 @@ use crate::report::Finding;
 use juggler_math::Transform;
 use juggler_tracer::material::MaterialId;
 use juggler_tracer::shape::{AnyShape, Sphere};
-use juggler_tracer::world;
+use juggler_tracer::world::{self, Content as Placed, Level};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// All objects of a scene that [`super::count::check`] found finite and small enough.
+/// All objects of a scene whose groups were counted.
 pub fn place(
     scene: &Description,
+    counts: &Counts<'_>,
     files: Files<'_>,
     materials: &mut Materials,
     findings: &mut Vec<Finding>,
@@ -27,9 +30,13 @@ pub fn place(
         .collect();
     let top = preparing.objects(&scene.objects, &Trail::Root.key("objects"));
     let plain = preparing.materials.plain();
-    let mut placing = Placing { groups: &groups, placed: Vec::new() };
-    placing.all(&top, &Transform::IDENTITY, plain);
-    placing.placed
+    let mut placing = Placing { groups, levels: BTreeMap::new() };
+    // Groups come after those that they place: a shared one finds its own levels built.
+    for (name, _) in counts.iter().filter(|(_, count)| count.is_shared) {
+        let objects = placing.objects(placing.groups.get(name).map(Vec::as_slice).unwrap_or_default(), None);
+        placing.levels.insert(name, Arc::new(Level::new(objects)));
+    }
+    placing.objects(&top, Some(plain))
 }
 
 /// An object whose shapes are prepared and whose names are looked up.
@@ -40,7 +47,7 @@ struct Prepared<'s> {
 }
 
 enum Content<'s> {
-    Shapes(Vec<(Transform, AnyShape)>),
+    Shapes(Vec<(Transform, Arc<AnyShape>)>),
     Group(&'s str),
     Objects(Vec<Prepared<'s>>),
 }
@@ -68,7 +75,7 @@ impl Preparing<'_> {
     fn content<'s>(&mut self, object: &'s Object, path: &Trail<'_>) -> Option<Content<'s>> {
         if let Some(shape) = &object.shape {
             let shape = self.shape(shape, &path.key("shape"))?;
-            Some(Content::Shapes(vec![(Transform::IDENTITY, shape)]))
+            Some(Content::Shapes(vec![(Transform::IDENTITY, Arc::new(shape))]))
         } else if let Some(group) = &object.group {
             Some(Content::Group(&group.0))
         } else if let Some(objects) = &object.objects {
@@ -104,7 +111,7 @@ impl Preparing<'_> {
         for Bead { center, radius } in beads {
             let sphere = Sphere { radius };
             if let Some(shape) = self.shape(&sphere.into(), path) {
-                shapes.push((Transform::translation(center), shape));
+                shapes.push((Transform::translation(center), Arc::new(shape)));
             }
         }
         Content::Shapes(shapes)
@@ -131,27 +138,47 @@ impl Preparing<'_> {
     }
 }
 
-struct Placing<'p, 's> {
-    groups: &'p BTreeMap<&'s str, Vec<Prepared<'s>>>,
-    placed: Vec<world::Object>,
+struct Placing<'s> {
+    groups: BTreeMap<&'s str, Vec<Prepared<'s>>>,
+    /// Groups that are shared, as far as they are built.
+    levels: BTreeMap<&'s str, Arc<Level>>,
 }
 
-impl Placing<'_, '_> {
-    fn all(&mut self, objects: &[Prepared<'_>], parent: &Transform, inherited: MaterialId) {
+impl Placing<'_> {
+    /// The objects of one level; those that say nothing are made of `inherited`.
+    fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<world::Object> {
+        let mut placed = Vec::new();
+        self.place(objects, &Transform::IDENTITY, inherited, &mut placed);
+        placed
+    }
+
+    fn place(
+        &self,
+        objects: &[Prepared<'_>],
+        parent: &Transform,
+        inherited: Option<MaterialId>,
+        placed: &mut Vec<world::Object>,
+    ) {
         for object in objects {
             let transform = object.transform.then(parent);
-            let material = object.material.unwrap_or(inherited);
+            let material = object.material.or(inherited);
             match &object.content {
-                Content::Shapes(shapes) => self.placed.extend(shapes.iter().map(|(place, shape)| world::Object {
-                    shape: shape.clone(),
+                Content::Shapes(shapes) => placed.extend(shapes.iter().map(|(place, shape)| world::Object {
+                    content: Placed::Shape(Arc::clone(shape)),
                     transform: place.then(&transform),
                     material,
                 })),
-                Content::Objects(objects) => self.all(objects, &transform, material),
-                Content::Group(name) => {
-                    let groups = self.groups;
-                    self.all(groups.get(name).map(Vec::as_slice).unwrap_or_default(), &transform, material);
-                }
+                Content::Objects(objects) => self.place(objects, &transform, material, placed),
+                Content::Group(name) => match self.levels.get(name) {
+                    Some(level) => {
+                        let content = Placed::Level(Arc::clone(level));
+                        placed.push(world::Object { content, transform, material });
+                    }
+                    None => {
+                        let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
+                        self.place(objects, &transform, material, placed);
+                    }
+                },
             }
         }
     }

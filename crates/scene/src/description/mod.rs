@@ -68,7 +68,8 @@ pub struct Description {
     /// Materials by name.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub materials: IndexMap<String, AnyMaterial>,
-    /// Groups of objects by name, to be placed any number of times.
+    /// Groups of objects by name, to be placed any number of times, groups within groups too. What repeats often is
+    /// stored once.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub groups: IndexMap<String, Vec<Object>>,
     /// The lights. A scene without any, and without anything that glows, is lit softly from above the camera.

@@ -24,6 +24,11 @@ pub use table::MaterialTable;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
+impl MaterialId {
+    /// No material at all: black.
+    pub const NONE: Self = Self(u32::MAX);
+}
+
 /// A material written in place, or the name of one of the scene's.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]

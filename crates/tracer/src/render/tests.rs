@@ -29,7 +29,7 @@ fn world(objects: &[(&str, Vec3, &str)], lights: &[&str], background: Rgb) -> Wo
             shape.prepare().unwrap();
             let material: AnyMaterial = read(material);
             let material = compiler.compile(&material).unwrap();
-            Object { shape, transform: Transform::translation(*place), material }
+            Object::new(shape, Transform::translation(*place), material)
         })
         .collect();
     let lights = lights.iter().map(|light| read::<AnyLight>(light)).collect();

@@ -1,114 +1,140 @@
-//! Objects as tracing sees them: spheres in world space, everything else in its own.
+//! Objects as tracing sees them: spheres in their level's space, everything else in its own.
 
-use super::Object;
-use crate::material::MaterialTable;
+use super::{Content, Object, WorldHit};
+use crate::material::MaterialId;
 use crate::shape::{AnyShape, Hit, intersect_sphere, longitude_latitude, sphere_surface};
 use crate::surface::Surface;
 use juggler_math::{Ray, Transform, Vec3};
 
-/// An object with what is worked out once.
+/// An object with what is worked out once. What a hit asks for lies together: one cache line, seldom two.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Placed {
-    pub object: Object,
-    /// Centre and radius in the world, for a sphere that is still one there.
+    /// Centre and radius in the level's space, for a sphere that is still one there.
     sphere: Option<(Vec3, f32)>,
-    /// The material is the same everywhere: nobody asks for surface coordinates.
-    plain: bool,
-    /// Object space is world space, as for most grounds.
+    pub material: Option<MaterialId>,
+    /// Object space is the level's space, as for most grounds.
     unmoved: bool,
+    pub content: Content,
+    pub transform: Transform,
 }
 
 impl Placed {
-    pub fn new(object: Object, materials: &MaterialTable) -> Self {
-        let sphere = match (&object.shape, object.transform.uniform_scale()) {
-            (AnyShape::Sphere(sphere), Some(scale)) => Some((object.transform.origin(), sphere.radius * scale)),
-            _ => None,
-        };
-        let plain = !materials.is_textured(object.material);
-        let unmoved = object.transform == Transform::IDENTITY;
-        Self { object, sphere, plain, unmoved }
+    pub fn new(object: Object) -> Self {
+        let sphere = sphere(&object);
+        let Object { content, transform, material } = object;
+        Self { sphere, material, unmoved: transform == Transform::IDENTITY, content, transform }
     }
 
-    /// The nearest hit in the ray's range.
-    #[inline]
-    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        match self.sphere {
-            Some((center, radius)) => intersect_sphere(center, radius, ray),
-            None if self.unmoved => self.object.shape.intersect(ray),
-            None => self.object.shape.intersect(&self.object.transform.ray_to_local(ray)),
+    /// The ray in the object's space.
+    #[inline(always)]
+    pub fn local(&self, ray: &Ray) -> Ray {
+        if self.unmoved { *ray } else { self.transform.ray_to_local(ray) }
+    }
+
+    /// Keeps the nearest hit in the ray's range if it is better than `best`. `number` is that of the object's first
+    /// shape.
+    #[inline(never)]
+    pub fn closest(&self, ray: &mut Ray, number: u32, best: &mut WorldHit) {
+        let hit = match (&self.content, self.sphere) {
+            (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
+            (Content::Shape(shape), None) => shape.intersect(&self.local(ray)),
+            (Content::Level(level), _) => {
+                let mut local = self.local(ray);
+                level.closest(&mut local, number, best);
+                ray.t_max = local.t_max;
+                return;
+            }
+        };
+        if let Some(hit) = hit {
+            best.keep(hit, number, ray);
         }
     }
 
     /// Whether anything is hit in the ray's range.
     #[inline]
     pub fn occludes(&self, ray: &Ray) -> bool {
-        match self.sphere {
-            Some((center, radius)) => intersect_sphere(center, radius, ray).is_some(),
-            None if self.unmoved => self.object.shape.occludes(ray),
-            None => self.object.shape.occludes(&self.object.transform.ray_to_local(ray)),
+        match (&self.content, self.sphere) {
+            (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
+            (Content::Shape(shape), None) => shape.occludes(&self.local(ray)),
+            (Content::Level(level), _) => level.occludes(&self.local(ray)),
         }
     }
 
-    /// The surface at a hit, world space.
+    /// The surface at a hit of this object's `shape`, in the level's space. Surface coordinates may be left out
+    /// where a material is `plain`, the same everywhere.
     #[inline(always)]
-    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+    pub fn surface(&self, shape: &AnyShape, ray: &Ray, hit: &Hit, plain: bool) -> Surface {
         match self.sphere {
             Some((center, radius)) => {
                 let surface = sphere_surface(center, radius, ray, hit);
-                if self.plain { surface } else { self.textured(surface) }
+                if plain { surface } else { self.textured(shape, surface) }
             }
-            None if self.unmoved => self.object.shape.surface(ray, hit),
+            None if self.unmoved => shape.surface(ray, hit),
             None => {
-                let transform = &self.object.transform;
-                self.object.shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
+                let transform = &self.transform;
+                shape.surface(&transform.ray_to_local(ray), hit).to_world(transform)
             }
         }
     }
 
-    /// The surface of a sphere in the world with what its textures ask for. The point stays where the world's
+    /// The surface of a sphere in the level's space with what its textures ask for. The point stays where that
     /// arithmetic found it: by that of object space, rays that leave it could meet the sphere again.
     #[inline(never)]
-    fn textured(&self, surface: Surface) -> Surface {
-        let outwards = self.object.transform.vector_to_local(surface.normal).normalize();
-        let AnyShape::Sphere(sphere) = &self.object.shape else { return surface };
+    fn textured(&self, shape: &AnyShape, surface: Surface) -> Surface {
+        let outwards = self.transform.vector_to_local(surface.normal).normalize();
+        let AnyShape::Sphere(sphere) = shape else { return surface };
         Surface { uv: longitude_latitude(outwards), local: outwards * sphere.radius, ..surface }
     }
+}
+
+/// Centre and radius in the level's space of a sphere that is still one there.
+fn sphere(object: &Object) -> Option<(Vec3, f32)> {
+    let Content::Shape(shape) = &object.content else { return None };
+    let AnyShape::Sphere(sphere) = &**shape else { return None };
+    Some((object.transform.origin(), sphere.radius * object.transform.uniform_scale()?))
 }
 
 /// One leaf entry. Spheres bring their numbers along; for the others one more look at the object is no
 /// matter.
 #[derive(Clone, Copy, Debug)]
 pub enum Item {
-    /// A sphere that is still one in the world.
+    /// A sphere that is still one in the level's space.
     Sphere {
-        /// World space.
+        /// Level's space.
         center: Vec3,
-        /// World space.
+        /// Level's space.
         radius: f32,
-        /// Number of the object.
-        object: u32,
+        /// Number of the shape.
+        number: u32,
     },
     /// Anything else.
     Other {
-        /// Number of the object.
-        object: u32,
+        /// Place of the object in its level.
+        place: u32,
+        /// Number of its first shape.
+        number: u32,
     },
 }
 
 impl Item {
-    pub fn new(placed: &Placed, object: u32) -> Self {
-        match placed.sphere {
-            Some((center, radius)) => Self::Sphere { center, radius, object },
-            None => Self::Other { object },
+    pub fn new(object: &Object, place: u32, number: u32) -> Self {
+        match sphere(object) {
+            Some((center, radius)) => Self::Sphere { center, radius, number },
+            None => Self::Other { place, number },
         }
     }
 
-    /// The nearest hit in the ray's range, and the number of the object.
+    /// Keeps the nearest hit in the ray's range if it is better than `best`; `first` is added to the number.
     #[inline(always)]
-    pub fn intersect(&self, objects: &[Placed], ray: &Ray) -> Option<(Hit, u32)> {
+    pub fn closest(&self, objects: &[Placed], ray: &mut Ray, first: u32, best: &mut WorldHit) {
         match *self {
-            Self::Sphere { center, radius, object } => Some((intersect_sphere(center, radius, ray)?, object)),
-            Self::Other { object } => Some((objects[object as usize].intersect(ray)?, object)),
+            Self::Sphere { center, radius, number } => {
+                if let Some(hit) = intersect_sphere(center, radius, ray) {
+                    best.keep(hit, first + number, ray);
+                }
+            }
+            Self::Other { place, number } => objects[place as usize].closest(ray, first + number, best),
         }
     }
 
@@ -117,7 +143,7 @@ impl Item {
     pub fn occludes(&self, objects: &[Placed], ray: &Ray) -> bool {
         match *self {
             Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
-            Self::Other { object } => objects[object as usize].occludes(ray),
+            Self::Other { place, .. } => objects[place as usize].occludes(ray),
         }
     }
 }

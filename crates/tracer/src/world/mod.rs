@@ -4,14 +4,16 @@ use crate::background::AnyBackground;
 use crate::bsdf::Phong;
 use crate::light::AnyLight;
 use crate::material::{MaterialId, MaterialTable};
-use crate::shape::{AnyShape, Hit};
+use crate::shape::Hit;
 use crate::surface::Surface;
-use juggler_bvh::{Bvh, Quality};
-use juggler_math::{Aabb, Ray, Rgb, Transform, Vec2, Vec3};
+use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 
+mod geometry;
 mod items;
+mod large;
+mod level;
+mod object;
 mod trace;
 
 #[cfg(test)]
@@ -19,24 +21,16 @@ mod precision;
 #[cfg(test)]
 mod tests;
 
-use items::{Item, Placed};
-
-/// A shape in its place.
-#[derive(Clone, Debug)]
-pub struct Object {
-    /// The shape, already prepared.
-    pub shape: AnyShape,
-    /// Object space → world.
-    pub transform: Transform,
-    /// What it is made of.
-    pub material: MaterialId,
-}
+pub use geometry::Geometry;
+pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
+pub use object::{Content, Object};
 
 /// What a ray met, before anything is worked out about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldHit {
     /// As the shape gave it.
     pub hit: Hit,
+    /// Number of the shape, instances of levels counted as what they hold.
     object: u32,
 }
 
@@ -48,6 +42,16 @@ impl WorldHit {
     pub fn is_some(&self) -> bool {
         self.object != u32::MAX
     }
+
+    /// The nearer one stays; of two at the same distance the one with the lower number, so that the order of
+    /// traversal cannot show. The ray ends at it.
+    #[inline(always)]
+    fn keep(&mut self, hit: Hit, object: u32, ray: &mut Ray) {
+        if hit.t < self.hit.t || (hit.t == self.hit.t && object < self.object) {
+            ray.t_max = hit.t;
+            *self = Self { hit, object };
+        }
+    }
 }
 
 /// A point where a path touches the world.
@@ -57,7 +61,7 @@ pub struct Vertex {
     pub surface: Surface,
     /// What it is made of.
     pub material: MaterialId,
-    /// Number of the object.
+    /// Number of the shape, instances of levels counted as what they hold.
     pub object: u32,
 }
 
@@ -74,29 +78,9 @@ pub struct Lamp {
     ball: Option<(Vec3, f32)>,
 }
 
-/// Counts for reports.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Geometry {
-    /// Objects.
-    pub shapes: usize,
-    /// Triangles of all meshes, polygons and triangles.
-    pub triangles: usize,
-    /// Lights.
-    pub lights: usize,
-    /// Bytes of shapes, each mesh counted once however often it is placed.
-    pub geometry_bytes: usize,
-    /// Bytes of the hierarchies, over the objects and within meshes.
-    pub bvh_bytes: usize,
-}
-
 /// Everything that can be seen.
 pub struct World {
-    objects: Vec<Placed>,
-    /// Bounded objects in the hierarchy's order.
-    items: Vec<Item>,
-    bvh: Bvh,
-    unbounded: Vec<u32>,
-    bounds: Aabb,
+    top: Level,
     materials: MaterialTable,
     lamps: Vec<Lamp>,
     ambient: Rgb,
@@ -118,26 +102,19 @@ impl Lamp {
 }
 
 impl World {
-    /// Builds the hierarchy over all bounded objects. Every `Object::material` must be in `materials`.
+    /// Builds the hierarchy over the objects. Every `Object::material` must be in `materials`.
     pub fn new(
         objects: Vec<Object>,
         materials: MaterialTable,
         lights: Vec<AnyLight>,
         background: AnyBackground,
     ) -> Self {
-        let boxes: Vec<Aabb> = objects.iter().map(|o| o.transform.aabb(&o.shape.bounds())).collect();
-        let numbers = 0..objects.len() as u32;
-        let (bounded, unbounded): (Vec<u32>, Vec<u32>) = numbers.partition(|i| boxes[*i as usize].is_finite());
-        let bounded_boxes: Vec<Aabb> = bounded.iter().map(|i| boxes[*i as usize]).collect();
-        let bvh = Bvh::build(&bounded_boxes, Quality::Balanced);
-        let order = bvh.order().iter().map(|position| bounded[*position as usize]);
-        let has_transparency = objects.iter().any(|o| materials.is_transparent(o.material));
-        let objects: Vec<Placed> = objects.into_iter().map(|object| Placed::new(object, &materials)).collect();
-        let items = order.map(|object| Item::new(&objects[object as usize], object)).collect();
+        let top = Level::top(objects);
+        let objects = geometry::levels(&top).into_iter().flat_map(|level| &level.objects);
+        let has_transparency = objects.filter_map(|placed| placed.material).any(|id| materials.is_transparent(id));
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
-        let bounds = bounded_boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(*one));
         let lamps = lights.into_iter().filter(|light| light.ambient().is_black()).map(Lamp::new).collect();
-        Self { objects, items, bvh, unbounded, bounds, materials, lamps, ambient, background, has_transparency }
+        Self { top, materials, lamps, ambient, background, has_transparency }
     }
 
     /// The lights that shine from somewhere.
@@ -157,7 +134,7 @@ impl World {
 
     /// A box around all bounded objects; empty when there are none.
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.top.bounds()
     }
 
     /// The numbers of the material at a vertex.
@@ -169,30 +146,11 @@ impl World {
     /// The surface where `ray` made `hit`.
     #[inline(always)]
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
-        let placed = &self.objects[hit.object as usize];
-        Vertex { surface: placed.surface(ray, &hit.hit), material: placed.object.material, object: hit.object }
+        self.top.vertex(ray, hit, hit.object, None, &self.materials)
     }
 
     /// Counts for reports.
     pub fn geometry(&self) -> Geometry {
-        // Copies of a mesh share its arrays and its hierarchy.
-        let mut meshes = BTreeSet::new();
-        let shapes = self.objects.iter().map(|placed| &placed.object.shape);
-        let stored: Vec<&AnyShape> = shapes
-            .clone()
-            .filter(|shape| match shape {
-                AnyShape::Mesh(mesh) => mesh.data().is_none_or(|data| meshes.insert(std::ptr::from_ref(data).addr())),
-                _ => true,
-            })
-            .collect();
-        Geometry {
-            shapes: self.objects.len(),
-            triangles: shapes.map(|shape| shape.triangles()).sum(),
-            lights: self.lamps.len(),
-            geometry_bytes: size_of_val(self.objects.as_slice())
-                + size_of_val(self.items.as_slice())
-                + stored.iter().map(|shape| shape.heap_bytes()).sum::<usize>(),
-            bvh_bytes: self.bvh.bytes() + stored.iter().map(|shape| shape.bvh_bytes()).sum::<usize>(),
-        }
+        Geometry::of(&self.top, self.lamps.len())
     }
 }

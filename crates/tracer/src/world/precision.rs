@@ -1,12 +1,12 @@
 //! Follow-up and shadow rays of every shape at hostile sizes and places, under hostile transforms, from hostile
 //! cameras, through the same code that renders.
 
-use super::tests::world_of;
+use super::tests::world_with;
 use super::*;
 use crate::shape::contract::{ball, distance, is_convex, is_flat, is_solid};
-use crate::shape::{Cuboid, Mesh, MeshData, Plane, Sphere};
+use crate::shape::{AnyShape, Cuboid, Mesh, MeshData, Plane, Sphere};
 use juggler_math::testing::Random;
-use juggler_math::{DVec3, Frame, fun, robust};
+use juggler_math::{DVec3, Frame, Transform, fun, robust};
 
 /// One object at its place.
 struct Subject {
@@ -43,7 +43,7 @@ impl Subject {
         let place = random.unit_vector() * (far * size) - linear.point(center);
         let place = if far > 0.0 { place } else { Vec3::ZERO };
         let transform = linear.then(&Transform::translation(place));
-        let world = world_of(shape.clone(), transform, map % 2 == 1);
+        let world = world_with(shape.clone(), transform, map % 2 == 1);
         Self { world, shape: shape.clone(), transform, size }
     }
 
@@ -209,7 +209,7 @@ fn rays_leave_huge_spheres_where_coordinates_are_small() {
     for radius in [1.0f32, 1e3, 1e6] {
         let up = random.unit_vector();
         let place = Transform::translation(-up * radius);
-        let world = world_of(Sphere { radius }.into(), place, false);
+        let world = world_with(Sphere { radius }.into(), place, false);
         let subject = Subject { world, shape: Sphere { radius }.into(), transform: place, size: radius };
         for spread in [1e-6f32, 1e-4, 1e-2, 1.0] {
             for away in [1e-3f32, 1.0, 30.0, 70.0, 1e4] {

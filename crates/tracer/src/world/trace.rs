@@ -1,7 +1,7 @@
 //! The questions that rays ask: what is nearest, is anything in the way, how much light gets through.
 
-use super::{World, WorldHit};
-use crate::shape::Hit;
+use super::large::Order;
+use super::{Level, World, WorldHit};
 use juggler_bvh::Leaf;
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
@@ -11,96 +11,117 @@ const MAX_CROSSINGS: u32 = 64;
 
 /// Keeps the nearest hit of each ray of a call.
 struct Nearest<'a> {
-    world: &'a World,
+    level: &'a Level,
+    /// Number of the level's first shape.
+    first: u32,
     hits: &'a mut [WorldHit],
 }
 
 impl Leaf for Nearest<'_> {
     #[inline]
     fn closest(&mut self, lane: usize, ray: &mut Ray, range: Range<u32>) {
-        for item in &self.world.items[range.start as usize..range.end as usize] {
-            if let Some((hit, object)) = item.intersect(&self.world.objects, ray) {
-                keep(&mut self.hits[lane], hit, object, ray);
-            }
+        for item in &self.level.items[range.start as usize..range.end as usize] {
+            item.closest(&self.level.objects, ray, self.first, &mut self.hits[lane]);
         }
     }
 
     #[inline]
     fn any(&mut self, _lane: usize, ray: &Ray, range: Range<u32>) -> bool {
-        let items = &self.world.items[range.start as usize..range.end as usize];
-        items.iter().any(|item| item.occludes(&self.world.objects, ray))
+        let items = &self.level.items[range.start as usize..range.end as usize];
+        items.iter().any(|item| item.occludes(&self.level.objects, ray))
     }
 }
 
-/// The nearer one stays; of two at the same distance the one with the lower number, so that the order of
-/// traversal cannot show.
-#[inline(always)]
-fn keep(best: &mut WorldHit, hit: Hit, object: u32, ray: &mut Ray) {
-    if hit.t < best.hit.t || (hit.t == best.hit.t && object < best.object) {
-        ray.t_max = hit.t;
-        *best = WorldHit { hit, object };
+impl Level {
+    /// Improves on `hits` with the nearest hits. `first` is the number of this level's first shape.
+    #[inline]
+    pub(super) fn improve(&self, rays: &mut [Ray], order: Order, first: u32, hits: &mut [WorldHit]) {
+        for place in &self.unbounded {
+            let (placed, number) = (&self.objects[*place as usize], first + self.first(*place));
+            for (ray, best) in rays.iter_mut().zip(&mut *hits) {
+                placed.closest(ray, number, best);
+            }
+        }
+        let mut nearest = Nearest { level: self, first, hits };
+        match order {
+            Order::Coherent => self.bvh.closest_packet(rays, &mut nearest),
+            Order::Any => self.bvh.closest_batch(rays, &mut nearest),
+        }
+        for large in &self.large {
+            large.closest(&self.objects, rays, order, hits);
+        }
+    }
+
+    /// Whether each of the rays meets anything.
+    #[inline]
+    fn any(&self, rays: &[Ray], order: Order, occluded: &mut [bool]) {
+        let mut nearest = Nearest { level: self, first: 0, hits: &mut [] };
+        match order {
+            Order::Coherent => self.bvh.any_packet(rays, occluded, &mut nearest),
+            Order::Any => self.bvh.any_batch(rays, occluded, &mut nearest),
+        }
+        for place in &self.unbounded {
+            let placed = &self.objects[*place as usize];
+            for (ray, occluded) in rays.iter().zip(&mut *occluded) {
+                *occluded = *occluded || placed.occludes(ray);
+            }
+        }
+        for large in &self.large {
+            large.any(&self.objects, rays, order, occluded);
+        }
+    }
+
+    /// Whether one ray meets anything.
+    #[inline(never)]
+    pub(super) fn occludes(&self, ray: &Ray) -> bool {
+        let mut occluded = [false];
+        self.any(std::slice::from_ref(ray), Order::Any, &mut occluded);
+        occluded[0]
     }
 }
 
 impl World {
     /// The nearest hits of any number of rays that go much the same way as their neighbours.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
-        self.closest_unbounded(rays, hits);
-        self.bvh.closest_packet(rays, &mut Nearest { world: self, hits });
+        hits.fill(WorldHit::NONE);
+        self.top.improve(rays, Order::Coherent, 0, hits);
     }
 
     /// The nearest hits of any number of rays, in no order.
     pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
-        self.closest_unbounded(rays, hits);
-        self.bvh.closest_batch(rays, &mut Nearest { world: self, hits });
-    }
-
-    fn closest_unbounded(&self, rays: &mut [Ray], hits: &mut [WorldHit]) {
         hits.fill(WorldHit::NONE);
-        for number in &self.unbounded {
-            let placed = &self.objects[*number as usize];
-            for (ray, best) in rays.iter_mut().zip(&mut *hits) {
-                if let Some(hit) = placed.intersect(ray) {
-                    keep(best, hit, *number, ray);
-                }
-            }
-        }
+        self.top.improve(rays, Order::Any, 0, hits);
     }
 
     /// The nearest hit of one ray, whose end is drawn in to it.
     pub fn closest(&self, ray: &mut Ray) -> WorldHit {
-        let mut hits = [WorldHit::NONE];
-        self.closest_batch(std::slice::from_mut(ray), &mut hits);
-        hits[0]
+        let mut hit = WorldHit::NONE;
+        self.top.closest(ray, 0, &mut hit);
+        hit
     }
 
     /// How much of a light's radiance comes through along each of any number of rays that go much the same way
     /// as their neighbours.
     pub fn transmittance_packet(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, |rays, occluded, leaf| self.bvh.any_packet(rays, occluded, leaf));
+        self.transmittance(rays, through, Order::Coherent);
     }
 
     /// How much of a light's radiance comes through along each of any number of rays.
     pub fn transmittance_batch(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, |rays, occluded, leaf| self.bvh.any_batch(rays, occluded, leaf));
+        self.transmittance(rays, through, Order::Any);
     }
 
-    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], any: impl Fn(&[Ray], &mut [bool], &mut Nearest)) {
+    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], order: Order) {
         if self.has_transparency {
             for (ray, through) in rays.iter().zip(through) {
                 *through = self.filtered(*ray);
             }
             return;
         }
-        const CHUNK: usize = 256;
-        for (rays, through) in rays.chunks(CHUNK).zip(through.chunks_mut(CHUNK)) {
-            let mut occluded = [false; CHUNK];
-            let occluded = &mut occluded[..rays.len()];
-            any(rays, occluded, &mut Nearest { world: self, hits: &mut [] });
-            for ((ray, occluded), through) in rays.iter().zip(occluded).zip(through) {
-                let blocked = *occluded || self.unbounded.iter().any(|i| self.objects[*i as usize].occludes(ray));
-                *through = if blocked { Rgb::BLACK } else { Rgb::WHITE };
-            }
+        let mut occluded = vec![false; rays.len()];
+        self.top.any(rays, order, &mut occluded);
+        for (occluded, through) in occluded.iter().zip(through) {
+            *through = if *occluded { Rgb::BLACK } else { Rgb::WHITE };
         }
     }
 

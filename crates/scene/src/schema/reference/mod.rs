@@ -1,7 +1,7 @@
 //! The format's documentation: a short introduction written by hand, then every part of the schema as Markdown.
 
 use super::{Schema, variants};
-use crate::compile::{MAX_EDGE, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES};
+use crate::compile::{MAX_EDGE, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
 use crate::expression::FUNCTIONS;
 use crate::validate::{family_noun, plural};
 use crate::{document, expression};
@@ -47,7 +47,9 @@ fn limits() -> String {
         ("values in a scene file", document::MAX_VALUES.to_string()),
         ("nesting of arrays and objects", document::MAX_DEPTH.to_string()),
         ("scene files of a scene", document::MAX_FILES.to_string()),
-        ("objects, after groups, chains and limbs are expanded", MAX_OBJECTS.to_string()),
+        ("objects, those of groups counted as often as they are placed", MAX_OBJECTS.to_string()),
+        ("objects in memory, those of large groups that repeat counted once", MAX_STORED.to_string()),
+        ("nesting of groups", MAX_NESTING.to_string()),
         ("nesting of materials", juggler_tracer::material::MAX_NESTING.to_string()),
         ("bytes of an expression", expression::MAX_LENGTH.to_string()),
         ("nesting of an expression", expression::MAX_DEPTH.to_string()),

@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 mod data;
+mod many;
 mod prepared;
 
 pub use data::MeshData;

@@ -1,0 +1,34 @@
+//! Many rays at once through a mesh's own hierarchy. The same hits as one by one.
+
+use super::Mesh;
+use crate::shape::Hit;
+use crate::shape::arithmetic::within_floats;
+use juggler_math::{Ray, Vec2};
+
+impl Mesh {
+    /// [`Shape::intersect`](crate::shape::Shape::intersect) for many rays, object space. `coherent` where they go much
+    /// the same way as their neighbours. The rays are used up.
+    pub fn intersect_many(&self, rays: &mut [Ray], coherent: bool) -> Vec<Option<Hit>> {
+        let Some(prepared) = &self.prepared else { return vec![None; rays.len()] };
+        rays.iter_mut().for_each(|ray| *ray = within_floats(ray));
+        let mut hits = vec![None; rays.len()];
+        match coherent {
+            true => prepared.bvh().closest_packet(rays, &mut hits),
+            false => prepared.bvh().closest_batch(rays, &mut hits),
+        }
+        let hit = |hit: juggler_bvh::TriangleHit| Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index };
+        hits.into_iter().map(|found| found.map(hit)).collect()
+    }
+
+    /// [`Shape::occludes`](crate::shape::Shape::occludes) for many rays, object space; see [`Mesh::intersect_many`].
+    pub fn occludes_many(&self, rays: &mut [Ray], coherent: bool) -> Vec<bool> {
+        let mut occluded = vec![false; rays.len()];
+        let Some(prepared) = &self.prepared else { return occluded };
+        rays.iter_mut().for_each(|ray| *ray = within_floats(ray));
+        match coherent {
+            true => prepared.bvh().any_packet(rays, &mut occluded),
+            false => prepared.bvh().any_batch(rays, &mut occluded),
+        }
+        occluded
+    }
+}
