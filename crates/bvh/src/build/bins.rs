@@ -8,6 +8,9 @@ use wide::{f32x4, i32x4};
 
 pub(super) const MAX_BINS: usize = 32;
 
+/// Fewer items are counted in one set of bins, not in two.
+const ONE_SET: usize = 512;
+
 /// The map from centers to bins, three axes side by side.
 #[derive(Clone, Copy)]
 pub(super) struct Mapping {
@@ -81,13 +84,28 @@ impl Bins {
     pub fn fill(&mut self, mapping: &Mapping, items: &[Item]) {
         self.boxes[..mapping.count].fill([Extent::EMPTY; 3]);
         self.counts[..mapping.count].fill([0; 4]);
-        for item in items {
-            let bins = mapping.bins(item).to_array();
-            for (axis, &bin) in bins[..3].iter().enumerate() {
-                let bin = bin as usize % MAX_BINS;
-                self.boxes[bin][axis] = self.boxes[bin][axis].union(item.extent());
-                self.counts[bin][axis] += 1;
-            }
+        if items.len() < ONE_SET {
+            items.iter().for_each(|item| self.add(mapping, item));
+            return;
+        }
+        // Neighbours often share a bin and would wait for each other.
+        let mut other = Self::EMPTY;
+        let (first, second) = items.split_at(items.len() / 2);
+        for (a, b) in first.iter().zip(second) {
+            self.add(mapping, a);
+            other.add(mapping, b);
+        }
+        second[first.len()..].iter().for_each(|item| self.add(mapping, item));
+        self.merge(&other);
+    }
+
+    #[inline(always)]
+    fn add(&mut self, mapping: &Mapping, item: &Item) {
+        let bins = mapping.bins(item).to_array();
+        for (axis, &bin) in bins[..3].iter().enumerate() {
+            let bin = bin as usize % MAX_BINS;
+            self.boxes[bin][axis] = self.boxes[bin][axis].union(item.extent());
+            self.counts[bin][axis] += 1;
         }
     }
 

@@ -12,17 +12,16 @@ const NOTHING: Centers = [Extent::EMPTY; 2];
 
 /// In place. Without a branch on the side, which could not be foreseen.
 pub(super) fn in_place(items: &mut [Item], rule: &Rule) -> Centers {
-    let (mut left, mut centers) = (0, NOTHING);
+    let mut left = 0;
     for i in 0..items.len() {
         let item = items[i];
         let is_left = rule.is_left(&item);
-        let side = &mut centers[usize::from(!is_left)];
-        *side = side.with(item.center());
         items[i] = items[left];
         items[left] = item;
         left += usize::from(is_left);
     }
-    centers
+    let around = |items: &[Item]| items.iter().fold(Extent::EMPTY, |all, item| all.with(item.center()));
+    [around(&items[..left]), around(&items[left..])]
 }
 
 /// Into another place of the same length, chunk by chunk in parallel; `lefts` says how many items of each

@@ -23,12 +23,15 @@ pub(super) fn optimize((nodes, order): (Pages<BinaryNode>, Vec<u32>), share: usi
     if nodes.len() < 8 {
         return (nodes, order);
     }
-    let mut tree = Tree::new(&nodes);
+    let mut better = nodes.clone();
+    let mut tree = Tree::new(&mut better);
+    let least = tree.least_area(share);
     for _ in 0..ROUNDS {
-        let moves = tree.find_moves(share);
+        let moves = tree.find_moves(least);
         tree.make(&moves);
     }
-    if tree.depth() <= MAX_DEPTH { relist(&tree.nodes, &order) } else { (nodes, order) }
+    let (listed, items, depth) = relist(&better, &order);
+    if depth <= MAX_DEPTH { (listed, items) } else { (nodes, order) }
 }
 
 /// A node to be put beside another.
@@ -40,8 +43,8 @@ struct Move {
     gain: f64,
 }
 
-struct Tree {
-    nodes: Pages<BinaryNode>,
+struct Tree<'a> {
+    nodes: &'a mut [BinaryNode],
     /// The root is its own parent.
     parents: Vec<u32>,
 }
@@ -55,14 +58,14 @@ fn area(bounds: Extent) -> f64 {
     BinaryNode::new(bounds, 0, 0).half_area()
 }
 
-impl Tree {
-    fn new(nodes: &Pages<BinaryNode>) -> Self {
+impl<'a> Tree<'a> {
+    fn new(nodes: &'a mut [BinaryNode]) -> Self {
         let mut parents = vec![0; nodes.len()];
         for (number, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
             parents[node.first as usize] = number as u32;
             parents[node.first as usize + 1] = number as u32;
         }
-        Self { nodes: nodes.clone(), parents }
+        Self { nodes, parents }
     }
 
     fn parent(&self, number: usize) -> usize {
@@ -73,17 +76,20 @@ impl Tree {
         self.nodes[number].extent()
     }
 
-    /// The best moves of the largest nodes, the most gainful first.
-    fn find_moves(&self, share: usize) -> Vec<Move> {
+    /// One of `share` nodes is larger, or fewer where areas are the same.
+    fn least_area(&self, share: usize) -> f64 {
+        let mut areas: Vec<f64> = self.nodes.par_iter().map(BinaryNode::half_area).collect();
+        let at = areas.len() / share;
+        *areas.select_nth_unstable_by(at, |a, b| b.total_cmp(a)).1
+    }
+
+    /// The best moves of nodes with more than this area, the most gainful first.
+    fn find_moves(&self, least_area: f64) -> Vec<Move> {
+        let large = self.nodes.par_iter().enumerate().filter(|(_, node)| node.half_area() > least_area);
         // Children of the root have no other place.
-        let nodes = self.nodes.par_iter().zip(&self.parents).enumerate().filter(|(_, (_, parent))| **parent != 0);
-        let mut nodes: Vec<(f64, usize)> = nodes.map(|(number, (node, _))| (node.half_area(), number)).collect();
-        let count = nodes.len() / share;
-        if count < nodes.len() {
-            nodes.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        }
-        let find = |stack: &mut Vec<(f64, usize)>, &(_, number): &(f64, usize)| self.find_move(number, stack);
-        let mut moves: Vec<Move> = nodes[..count].par_iter().map_init(Vec::new, find).flatten().collect();
+        let numbers: Vec<usize> = large.map(|(n, _)| n).filter(|&n| self.parent(n) != 0).collect();
+        let find = |stack: &mut Vec<(f64, usize)>, &number: &usize| self.find_move(number, stack);
+        let mut moves: Vec<Move> = numbers.par_iter().map_init(Vec::new, find).flatten().collect();
         moves.par_sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
         moves
     }
@@ -180,36 +186,26 @@ impl Tree {
             self.nodes[number] = BinaryNode::new(self.extent(first).union(self.extent(first + 1)), first, 0);
         }
     }
-
-    fn depth(&self) -> usize {
-        let (mut deepest, mut stack) = (0, vec![(0, 1)]);
-        while let Some((number, depth)) = stack.pop() {
-            deepest = deepest.max(depth);
-            let node: &BinaryNode = &self.nodes[number];
-            if !node.is_leaf() {
-                stack.extend([(node.first as usize, depth + 1), (node.first as usize + 1, depth + 1)]);
-            }
-        }
-        deepest
-    }
 }
 
-/// Nodes depth first, and the items in the order of the leaves.
-fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>) {
-    let mut listed = Pages::zeroed(nodes.len());
+/// Nodes depth first, the items in the order of the leaves, and the depth.
+fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>, usize) {
+    let mut pages = Pages::zeroed(nodes.len());
+    let listed = &mut pages[..];
     let mut items = Vec::with_capacity(order.len());
-    let Some(&root) = nodes.first() else { return (listed, items) };
-    let (mut end, mut stack) = (1, vec![(root, 0)]);
-    while let Some((node, place)) = stack.pop() {
+    let (mut end, mut deepest, mut stack) = (1, 0, vec![(0, 0, 1)]);
+    while let Some((number, place, depth)) = stack.pop() {
+        let node: BinaryNode = nodes[number];
         let first = node.first as usize;
+        deepest = deepest.max(depth);
         if node.is_leaf() {
             listed[place] = BinaryNode { first: items.len() as u32, ..node };
             items.extend_from_slice(&order[first..first + node.count as usize]);
         } else {
             listed[place] = BinaryNode { first: end as u32, ..node };
-            stack.extend([(nodes[first + 1], end + 1), (nodes[first], end)]);
+            stack.extend([(first + 1, end + 1, depth + 1), (first, end, depth + 1)]);
             end += 2;
         }
     }
-    (listed, items)
+    (pages, items, deepest)
 }
