@@ -101,3 +101,22 @@ fn more_than_a_billion_triangles_need_little_memory() {
     let (hash, mean) = hash(&picture);
     assert!(mean.iter().all(|mean| *mean > 0.1), "{mean:?} {hash}");
 }
+
+/// Eighteen groups, each in the next and all worth sharing: the innermost levels are shared, the rest is expanded, for
+/// tracing goes only so deep.
+#[test]
+fn levels_within_levels_have_an_end() {
+    let balls = || (0..15_u16).map(|i| Object::new(Sphere { radius: 0.3 }).at(f32::from(i), 0.0, 0.0));
+    let mut scene = Scene::new().size(16, 9).samples(1).group("g0", balls().chain(balls()));
+    for i in 1..18 {
+        let inner = Object::group(format!("g{}", i - 1)).at(0.0, 0.0, -1.0);
+        scene = scene.group(format!("g{i}"), balls().chain([inner]));
+    }
+    scene = scene.group("many", hundred(40.0, || Object::group("g17")));
+    let scene = hundred(400.0, || Object::group("many")).into_iter().fold(scene, Scene::add);
+    let picture = picture(&scene, "classic");
+    let geometry = picture.world().geometry();
+    assert_eq!(geometry.shapes, 10_000 * (30 + 17 * 15));
+    assert!(geometry.instances > 10_000 && geometry.instances < 10_000 * 16, "{geometry:?}");
+    assert!(hash(&picture).1.iter().all(|mean| *mean > 0.05));
+}
