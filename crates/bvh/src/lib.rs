@@ -54,7 +54,7 @@ mod triangles;
 pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality, RefitError};
 pub use inspect::Visits;
 pub use packet::PACKET;
-pub use triangle::intersect_triangle;
+pub use triangle::{TriangleTest, intersect_triangle};
 pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
 
 /// A kind of vector unit, known to be there.

@@ -14,6 +14,18 @@ use crate::lanes::{max, min};
 use crate::slabs::inverses;
 use juggler_math::{Ray, Vec3};
 
+/// How the distance and the weights of a hit are found. Whether a ray passes inside of a triangle is told the same way
+/// by both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TriangleTest {
+    /// In double precision: watertight, and exact however slender the triangle is.
+    #[default]
+    Watertight,
+    /// In single precision: slender triangles may be off by thousands of ulp, so that rays that leave them may
+    /// meet them again. For queries that want no more than a hit.
+    Fast,
+}
+
 /// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
 /// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
 /// that meets an edge or a corner hits at least one of the triangles there. Triangles without area are
@@ -23,7 +35,7 @@ pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, 
     let signs = (0..3).fold(0, |signs, axis| signs | u32::from(ray.direction[axis].is_sign_negative()) << axis);
     let shear = Shear::of(ray, [x, y, z, 0.0], signs);
     let corners = [a, b, c].map(|corner| shear.axes.map(|axis| corner[axis]));
-    let hit = shear.intersect(ray.t_min, ray.t_max, corners)?;
+    let hit = shear.intersect(TriangleTest::Watertight, ray, corners)?;
     has_area([a, b, c]).then_some(hit)
 }
 
@@ -81,10 +93,14 @@ impl Shear {
     /// [`intersect_triangle`] for the ray that the shear was made of and a triangle that [has an area](has_area), its
     /// coordinates in the order of [`Shear::axes`].
     #[inline(always)]
-    pub fn intersect(&self, t_min: f32, t_max: f32, corners: [Point; 3]) -> Option<(f32, f32, f32)> {
+    pub fn intersect(&self, test: TriangleTest, ray: &Ray, corners: [Point; 3]) -> Option<(f32, f32, f32)> {
         let points = [self.project(corners[0]), self.project(corners[1]), self.project(corners[2])];
         let end = max(points[0][2], max(points[1][2], points[2][2]));
-        let (t, u, v) = weigh(points)?;
+        let (t, u, v) = match test {
+            TriangleTest::Watertight => weigh(points)?,
+            TriangleTest::Fast => weigh_fast(points)?,
+        };
+        let (t_min, t_max) = (ray.t_min, ray.t_max);
         let t_clamped = self.clamp(t, corners);
         (t <= t_max && end >= t_min && t_min <= t_clamped && t_clamped <= t_max).then_some((t_clamped, u, v))
     }
@@ -127,6 +143,20 @@ pub(crate) fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
     let [u, v, w] = [edges[0] * inverse, edges[1] * inverse, edges[2] * inverse];
     let [a, b, c] = points.map(|p| f64::from(p[2]));
     Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
+}
+
+/// [`weigh`] in single precision.
+#[inline(always)]
+fn weigh_fast(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+    let [e, f, g] = edges(points.map(|[x, y, _]| [x, y]));
+    let determinant = e + f + g;
+    if outside([e, f, g]) || determinant == 0.0 {
+        return None;
+    }
+    let inverse = 1.0 / determinant;
+    let (e, f, g) = (e * inverse, f * inverse, g * inverse);
+    let t = e * points[0][2] + f * points[1][2] + g * points[2][2];
+    t.is_finite().then_some((t, f, g))
 }
 
 /// Whether the axis passes edges on different sides.

@@ -3,7 +3,7 @@
 use crate::Mesh;
 use crate::measure::Sums;
 use crate::rays::Query;
-use juggler_bvh::{Quality, TriangleBvh, TriangleError, TriangleHit};
+use juggler_bvh::{Quality, TriangleBvh, TriangleError, TriangleHit, TriangleTest};
 use juggler_math::Ray;
 
 /// Rays of one call that coherent kernels are given: a tile of pixels.
@@ -21,11 +21,20 @@ pub struct Tree {
 }
 
 /// All trees.
-pub const TREES: &[Tree] = &[Tree {
-    name: "watertight",
-    watertight: true,
-    build: |mesh, quality| TriangleBvh::build(&mesh.positions, &mesh.triangles, quality),
-}];
+pub const TREES: &[Tree] = &[
+    Tree {
+        name: "watertight",
+        watertight: true,
+        build: |mesh, quality| TriangleBvh::build(&mesh.positions, &mesh.triangles, quality),
+    },
+    Tree {
+        name: "fast",
+        watertight: false,
+        build: |mesh, quality| {
+            TriangleBvh::build(&mesh.positions, &mesh.triangles, quality).map(|tree| tree.with_test(TriangleTest::Fast))
+        },
+    },
+];
 
 /// A way to ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

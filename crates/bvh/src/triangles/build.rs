@@ -4,6 +4,7 @@ use super::{Block, LANES, TriangleBvh, TriangleError};
 use crate::build::{Extent, Items, extent, refit};
 use crate::node::{Child, Node};
 use crate::pages::Pages;
+use crate::triangle::TriangleTest;
 use crate::triangle::has_area;
 use crate::{BuildOptions, Bvh, MAX_ITEMS, Quality};
 use juggler_math::{Aabb, Vec3};
@@ -35,7 +36,7 @@ impl TriangleBvh {
             }
             Ok::<_, TriangleError>(())
         })?;
-        Ok(Self { bvh, blocks })
+        Ok(Self { bvh, blocks, test: TriangleTest::default() })
     }
 
     /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps

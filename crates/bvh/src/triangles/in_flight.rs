@@ -5,7 +5,7 @@
 //! turns to the next ray; finished rays are replaced. The rays need nothing in common.
 
 use super::one::One;
-use super::{Block, TriangleBvh, TriangleHit};
+use super::{TriangleBvh, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Lanes, prefetch};
 use crate::node::Child;
@@ -32,18 +32,18 @@ struct Flight<'a, S: Simd> {
 
 impl<'a, S: Lanes> Flight<'a, S> {
     #[inline(always)]
-    fn new(simd: S, blocks: &'a [Block], number: usize, ray: &Ray) -> Self {
+    fn new(simd: S, tree: &'a TriangleBvh, number: usize, ray: &Ray) -> Self {
         let slabs = Slabs::of_ray(simd, ray);
-        let one = One::new(simd, blocks, ray, &slabs);
+        let one = One::new(simd, tree, ray, &slabs);
         Self { number, ray: *ray, slabs, one, current: Child::ROOT, stack: Stack::new() }
     }
 
     #[inline(always)]
-    fn restart(&mut self, simd: S, blocks: &'a [Block], number: usize, ray: &Ray) {
+    fn restart(&mut self, simd: S, tree: &'a TriangleBvh, number: usize, ray: &Ray) {
         self.number = number;
         self.ray = *ray;
         self.slabs = Slabs::of_ray(simd, ray);
-        self.one = One::new(simd, blocks, ray, &self.slabs);
+        self.one = One::new(simd, tree, ray, &self.slabs);
         self.current = Child::ROOT;
         self.stack.truncate(0);
     }
@@ -68,7 +68,7 @@ impl TriangleBvh {
                 rays[number].t_max = hit.t;
             }
             match rays.get(waiting) {
-                Some(ray) => flight.restart(simd, &self.blocks, waiting, ray),
+                Some(ray) => flight.restart(simd, self, waiting, ray),
                 None => _ = flights.swap_remove(at),
             }
             waiting += 1;
@@ -87,7 +87,7 @@ impl TriangleBvh {
             let Some(found) = self.any_step(simd, flight) else { continue };
             occluded[flight.number] = found;
             match rays.get(waiting) {
-                Some(ray) => flight.restart(simd, &self.blocks, waiting, ray),
+                Some(ray) => flight.restart(simd, self, waiting, ray),
                 None => _ = flights.swap_remove(at),
             }
             waiting += 1;
@@ -99,7 +99,7 @@ impl TriangleBvh {
     fn take_off<'a, S: Lanes>(&'a self, simd: S, rays: &[Ray]) -> ArrayVec<Flight<'a, S>, IN_FLIGHT> {
         let mut flights = ArrayVec::new();
         for (number, ray) in rays.iter().enumerate().take(IN_FLIGHT) {
-            flights.push(Flight::new(simd, &self.blocks, number, ray));
+            flights.push(Flight::new(simd, self, number, ray));
         }
         flights
     }

@@ -1,13 +1,13 @@
 //! Eight rays at the leaves: one triangle at a time, or eight triangles for each ray when few rays are left.
 
-use super::meet::{Lines, settle, splat};
-use super::{Block, LANES, TriangleHit};
+use super::meet::{Lines, settle, settle_fast, splat};
+use super::{Block, LANES, TriangleBvh, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes, bits};
 use crate::packet::{GROUP, Group, PACKET};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::Bundle;
-use crate::triangle::Shear;
+use crate::triangle::{Shear, TriangleTest};
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 use std::ops::Range;
@@ -16,6 +16,7 @@ use std::ops::Range;
 pub(super) struct Many<'a, S: Simd> {
     simd: S,
     blocks: &'a [Block],
+    test: TriangleTest,
     packets: [Packet; GROUP / PACKET],
     pub hits: [Option<TriangleHit>; GROUP],
 }
@@ -34,9 +35,9 @@ struct Packet {
 }
 
 impl<'a, S: Lanes> Many<'a, S> {
-    pub fn new(simd: S, blocks: &'a [Block]) -> Self {
+    pub fn new(simd: S, tree: &'a TriangleBvh) -> Self {
         let packets = [Packet::default(); GROUP / PACKET];
-        Self { simd, blocks, packets, hits: [None; GROUP] }
+        Self { simd, blocks: &tree.blocks, test: tree.test, packets, hits: [None; GROUP] }
     }
 
     /// Forgets what it has found and turns to other rays; `false` where those of a packet have no longest axis in
@@ -111,7 +112,13 @@ impl Packet {
 
     /// Active rays that hit the triangle in a lane of the block, and where.
     #[inline(always)]
-    fn rays_at<S: Lanes>(&self, simd: S, block: &Block, number: usize, active: u32) -> (u32, [[f32; LANES]; 3]) {
+    fn rays_at<S: Lanes>(
+        &self,
+        simd: S,
+        test: TriangleTest,
+        block: &Block,
+        (number, active): (usize, u32),
+    ) -> (u32, [[f32; LANES]; 3]) {
         let corners = block.permuted(number, self.axes);
         let [a, b, c] = corners;
         let lines = self.lines(simd);
@@ -120,7 +127,10 @@ impl Packet {
         if candidates == 0 {
             return (0, [[0.0; LANES]; 3]);
         }
-        let [t, u, v] = settle(points);
+        let [t, u, v] = match test {
+            TriangleTest::Watertight => settle(points),
+            TriangleTest::Fast => settle_fast(simd, points),
+        };
         let found = simd.load(&t);
         let mut clamped = found;
         for axis in 0..3 {
@@ -166,7 +176,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &blocks[items.start as usize];
         let (shear, candidates) = self.alone(lane, ray, block, items.len());
         for number in Bits(candidates) {
-            if let Some(hit) = block.hit(&shear, ray.t_min, ray.t_max, number) {
+            if let Some(hit) = block.hit(self.test, &shear, ray, number) {
                 self.keep(lane, hit, ray);
             }
         }
@@ -177,7 +187,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &self.blocks[items.start as usize];
         let (shear, candidates) = self.alone(lane, ray, block, items.len());
         for number in Bits(candidates) {
-            if block.hit(&shear, ray.t_min, ray.t_max, number).is_some() {
+            if block.hit(self.test, &shear, ray, number).is_some() {
                 return true;
             }
         }
@@ -190,7 +200,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &blocks[items.start as usize];
         for number in Bits(self.candidates(block, first, items.len())) {
             let packet = &self.packets[first / LANES];
-            let (mask, [t, u, v]) = packet.rays_at(self.simd, block, number, active);
+            let (mask, [t, u, v]) = packet.rays_at(self.simd, self.test, block, (number, active));
             for lane in Bits(mask) {
                 let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number] };
                 self.keep(first + lane, hit, &mut rays[lane]);
@@ -204,7 +214,7 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let packet = &self.packets[first / LANES];
         let mut found = 0;
         for number in Bits(self.candidates(block, first, items.len())) {
-            found |= packet.rays_at(self.simd, block, number, active & !found).0;
+            found |= packet.rays_at(self.simd, self.test, block, (number, active & !found)).0;
         }
         found
     }

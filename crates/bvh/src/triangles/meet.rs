@@ -90,3 +90,15 @@ pub(super) fn settle<S: Lanes>([a, b, c]: [Corner<S>; 3]) -> [[f32; 8]; 3] {
     }
     [t, u, v]
 }
+
+/// [`settle`] in single precision.
+#[inline(always)]
+pub(super) fn settle_fast<S: Lanes>(simd: S, [a, b, c]: [Corner<S>; 3]) -> [[f32; 8]; 3] {
+    let [e, f, g] = edges([[a[0], a[1]], [b[0], b[1]], [c[0], c[1]]]);
+    let determinant = e + f + g;
+    let inverse = simd.splat(1.0) / determinant;
+    let (e, f, g) = (e * inverse, f * inverse, g * inverse);
+    let t = e * a[2] + f * b[2] + g * c[2];
+    let is_hit = t.abs().simd_lt(f32::INFINITY) & !determinant.simd_eq(0.0);
+    [is_hit.select(t, simd.splat(f32::NAN)).into(), f.into(), g.into()]
+}

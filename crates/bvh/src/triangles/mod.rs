@@ -12,7 +12,7 @@ use crate::packet::{GROUP, Group};
 use crate::pages::Pages;
 use crate::slabs::{Bundle, Slabs};
 use crate::stack::Stack;
-use crate::triangle::Shear;
+use crate::triangle::{Shear, TriangleTest};
 use crate::{BuildStats, Bvh, RefitError};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
@@ -101,6 +101,7 @@ pub struct TriangleBvh {
     /// Its leaves name one block each: `items.start` is the block, `items.len()` the triangles in it.
     bvh: Bvh,
     blocks: Pages<Block>,
+    test: TriangleTest,
 }
 
 impl TriangleBvh {
@@ -117,7 +118,7 @@ impl TriangleBvh {
     #[inline(always)]
     fn closest_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> Option<TriangleHit> {
         let slabs = Slabs::of_ray(simd, ray);
-        let mut one = One::new(simd, &self.blocks, ray, &slabs);
+        let mut one = One::new(simd, self, ray, &slabs);
         self.bvh.closest_below(simd, Child::ROOT, stack, (0, &mut { *ray }), slabs, &mut one);
         one.hit
     }
@@ -125,7 +126,7 @@ impl TriangleBvh {
     #[inline(always)]
     fn any_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> bool {
         let slabs = Slabs::of_ray(simd, ray);
-        let mut one = One::new(simd, &self.blocks, ray, &slabs);
+        let mut one = One::new(simd, self, ray, &slabs);
         self.bvh.any_below(simd, Child::ROOT, stack, (0, ray), &slabs, &mut one)
     }
 
@@ -144,7 +145,7 @@ impl TriangleBvh {
 
     #[inline(always)]
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, &self.blocks));
+        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, self));
         for (rays, hits) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)) {
             if group.fill(simd, rays) && many.fill(rays, &group) {
                 self.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
@@ -160,7 +161,7 @@ impl TriangleBvh {
 
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
-        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, &self.blocks));
+        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, self));
         for (rays, occluded) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)) {
             if group.fill(simd, rays) && many.fill(rays, &group) {
                 let found = self.bvh.any_group(simd, &mut stack, 0, rays, &group, &mut many);
@@ -208,6 +209,12 @@ impl TriangleBvh {
         self.bytes() > IN_CACHE
     }
 
+    /// The same tree with another test of triangles than the watertight one.
+    pub fn with_test(mut self, test: TriangleTest) -> Self {
+        self.test = test;
+        self
+    }
+
     /// [`Bvh::with_simd_level`].
     pub fn with_simd_level(mut self, level: crate::SimdLevel) -> Self {
         self.bvh = self.bvh.with_simd_level(level);
@@ -217,7 +224,7 @@ impl TriangleBvh {
     /// What the search for the closest hit looks at.
     pub fn visits(&self, ray: &Ray) -> crate::Visits {
         let simd = fearless_simd::Level::baseline();
-        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut One::new(simd, &self.blocks, ray, &Slabs::of_ray(simd, ray))))
+        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut One::new(simd, self, ray, &Slabs::of_ray(simd, ray))))
     }
 
     /// A box around all triangles, at most a few millionths larger than needed; empty when there are none.
@@ -259,8 +266,8 @@ impl Block {
 
     /// Where the ray of the shear hits the triangle in a lane.
     #[inline(always)]
-    fn hit(&self, shear: &Shear, t_min: f32, t_max: f32, lane: usize) -> Option<TriangleHit> {
-        let (t, u, v) = shear.intersect(t_min, t_max, self.permuted(lane, shear.axes))?;
+    fn hit(&self, test: TriangleTest, shear: &Shear, ray: &Ray, lane: usize) -> Option<TriangleHit> {
+        let (t, u, v) = shear.intersect(test, ray, self.permuted(lane, shear.axes))?;
         Some(TriangleHit { t, u, v, index: self.index[lane & 7] })
     }
 

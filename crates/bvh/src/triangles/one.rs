@@ -1,11 +1,11 @@
 //! One ray at the leaves: eight triangles at once.
 
 use super::meet::Lines;
-use super::{Block, TriangleHit};
+use super::{Block, TriangleBvh, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes};
 use crate::slabs::Slabs;
-use crate::triangle::Shear;
+use crate::triangle::{Shear, TriangleTest};
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 use std::ops::Range;
@@ -14,14 +14,21 @@ use std::ops::Range;
 pub(super) struct One<'a, S: Simd> {
     simd: S,
     blocks: &'a [Block],
+    test: TriangleTest,
     shear: Shear,
     pub hit: Option<TriangleHit>,
 }
 
 impl<'a, S: Lanes> One<'a, S> {
     #[inline(always)]
-    pub fn new(simd: S, blocks: &'a [Block], ray: &Ray, slabs: &Slabs) -> Self {
-        Self { simd, blocks, shear: Shear::of(ray, slabs.exact_inverse, slabs.signs), hit: None }
+    pub fn new(simd: S, tree: &'a TriangleBvh, ray: &Ray, slabs: &Slabs) -> Self {
+        Self {
+            simd,
+            blocks: &tree.blocks,
+            test: tree.test,
+            shear: Shear::of(ray, slabs.exact_inverse, slabs.signs),
+            hit: None,
+        }
     }
 }
 
@@ -39,7 +46,7 @@ impl<S: Lanes> Leaf for One<'_, S> {
     fn closest(&mut self, _lane: usize, ray: &mut Ray, items: Range<u32>) {
         let block = &self.blocks[items.start as usize];
         for lane in Bits(self.candidates(ray, block, items.len())) {
-            if let Some(hit) = block.hit(&self.shear, ray.t_min, ray.t_max, lane)
+            if let Some(hit) = block.hit(self.test, &self.shear, ray, lane)
                 && hit.is_before(&self.hit)
             {
                 self.hit = Some(hit);
@@ -52,7 +59,7 @@ impl<S: Lanes> Leaf for One<'_, S> {
     fn any(&mut self, _lane: usize, ray: &Ray, items: Range<u32>) -> bool {
         let block = &self.blocks[items.start as usize];
         for lane in Bits(self.candidates(ray, block, items.len())) {
-            if block.hit(&self.shear, ray.t_min, ray.t_max, lane).is_some() {
+            if block.hit(self.test, &self.shear, ray, lane).is_some() {
                 return true;
             }
         }
