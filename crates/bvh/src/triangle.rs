@@ -14,6 +14,9 @@ use crate::lanes::{max, min};
 use crate::slabs::inverses;
 use juggler_math::{Ray, Vec3};
 
+/// No hit is farther: a distance that is no number of single precision is none that could be compared.
+pub(crate) const FARTHEST: f32 = f32::MAX;
+
 /// Where the ray meets the triangle between its `t_min` and `t_max`: `(t, u, v)` with the distance in units
 /// of the direction and the barycentric weights of `b` and `c` (that of `a` is `1 - u - v`). Two-sided. A ray
 /// that meets an edge or a corner hits at least one of the triangles there. Triangles without area are
@@ -86,6 +89,7 @@ impl Shear {
         let end = max(points[0][2], max(points[1][2], points[2][2]));
         let (t, u, v) = weigh(points)?;
         let t_clamped = self.clamp(t, corners);
+        let t_max = min(t_max, FARTHEST);
         (t <= t_max && end >= t_min && t_min <= t_clamped && t_clamped <= t_max).then_some((t_clamped, u, v))
     }
 
@@ -192,6 +196,15 @@ mod tests {
         // Edge-on: the plane holds the ray.
         assert_eq!(through(-Vec3::X, Vec3::X, -Vec3::Z), None);
         assert_eq!(intersect_triangle(&Ray::new(Vec3::Z, Vec3::ZERO), A, B, C), None);
+    }
+
+    /// The direction is so short that the distance in its units overflows.
+    #[test]
+    fn nothing_is_hit_at_infinity() {
+        let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0) * 1e20, -Vec3::Z * 1e-20);
+        let [a, b, c] = [A, B, C].map(|corner| corner * 1e20);
+        assert_eq!(intersect_triangle(&ray, a, b, c), None);
+        assert!(intersect_triangle(&Ray { direction: -Vec3::Z * 1e-18, ..ray }, a, b, c).is_some());
     }
 
     #[test]
