@@ -1,6 +1,6 @@
 //! From triangles to their tree: boxes, tree, then the blocks of the leaves.
 
-use super::{Block, LANES, TriangleBvh, TriangleError};
+use super::{Block, IN_CACHE, LANES, TriangleBvh, TriangleError};
 use crate::build::{Extent, Items, extent, refit};
 use crate::node::{Child, Node};
 use crate::pages::Pages;
@@ -35,7 +35,8 @@ impl TriangleBvh {
             }
             Ok::<_, TriangleError>(())
         })?;
-        Ok(Self { bvh, blocks })
+        let in_flight = bvh.bytes() + blocks.bytes() > IN_CACHE;
+        Ok(Self { bvh, blocks, in_flight })
     }
 
     /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps
