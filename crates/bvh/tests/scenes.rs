@@ -2,7 +2,7 @@
 //! bits, and brute force agrees on some. With `JUGGLER_RAYS` (rays of each kind) in the thousands the meshes have the
 //! size that they are measured with: `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test scenes`.
 
-#![allow(clippy::unwrap_used)] // helpers of tests, which the lint does not see as such
+#![allow(clippy::print_stdout, clippy::unwrap_used)] // a test's figures, and helpers of tests
 
 mod common;
 

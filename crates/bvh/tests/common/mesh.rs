@@ -1,4 +1,5 @@
 //! Triangles, brute force over them, and every kernel at every vector level against it.
+#![allow(clippy::unwrap_used)] // helpers of tests, which the lint does not see as such
 
 use super::Random;
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit, intersect_triangle, simd_levels};

@@ -65,9 +65,14 @@ impl<'a> Aim<'a> {
             4 => self.on_planes(random) - origin,
             5 => self.on_a_triangle(random) - origin,
             6 => self.along(random),
-            _ => random.direction() * [1.0, 1e-30, 1e30, 1e-6, 1e6][random.below(5)],
+            _ => random.direction() * [1.0, self.shortest(), 1e30, 1e-6, 1e6][random.below(5)],
         };
         Ray::new(origin, usable(direction))
+    }
+
+    /// Distances stay below 2^100, as far as single rays along the axes see.
+    fn shortest(&self) -> f32 {
+        1e-30 * self.radius.max(1.0)
     }
 
     /// In the plane of a triangle, not always in it.
@@ -96,7 +101,7 @@ impl<'a> Aim<'a> {
                 })
                 .collect(),
             2 => self.neighbours(random, kind, count),
-            _ => self.from_one_place(random, count),
+            _ => self.through_an_eye(random, count),
         }
     }
 
@@ -116,7 +121,7 @@ impl<'a> Aim<'a> {
     }
 
     /// From an eye to what lies near a point: a camera's tile.
-    fn from_one_place(&self, random: &mut Random, count: usize) -> Vec<Ray> {
+    fn through_an_eye(&self, random: &mut Random, count: usize) -> Vec<Ray> {
         let (eye, target) = (self.somewhere(random, 3.0), self.on_a_triangle(random));
         let spread = self.radius * [1e-3, 0.05, 0.5][random.below(3)];
         (0..count).map(|_| Ray::new(eye, usable(target + random.point() * spread - eye))).collect()
