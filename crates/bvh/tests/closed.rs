@@ -10,7 +10,7 @@ use common::mesh::{Kernels, Mesh, globe, rays_to_try};
 use juggler_math::{Ray, Vec3, vec3};
 
 /// Rays a mesh and quality.
-const SMALL: usize = 10_000;
+const SMALL: usize = 25_000;
 /// Two groups of packets and an odd rest.
 const CALL: usize = 70;
 

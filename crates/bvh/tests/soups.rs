@@ -11,7 +11,7 @@ use common::rays::{Aim, cut};
 use juggler_math::{Ray, Vec3, vec3};
 
 /// Small enough that brute force is quick.
-const SMALL: usize = 1000;
+const SMALL: usize = 2500;
 
 fn whole(random: &mut Random, below: usize) -> Vec3 {
     Vec3::from(std::array::from_fn(|_| random.below(below) as f32))

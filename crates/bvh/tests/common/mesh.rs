@@ -77,6 +77,7 @@ pub fn globe(random: &mut Random, rows: u32, columns: u32, rough: f32) -> Mesh {
 pub struct Kernels {
     name: String,
     tree: TriangleBvh,
+    /// The same, with rays in flight.
     in_flight: TriangleBvh,
 }
 
