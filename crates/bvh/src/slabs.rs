@@ -109,7 +109,8 @@ impl Slabs {
 
     /// For rays that run parallel, or almost, to an axis plane: along that axis the ray stays where it is, so
     /// planes lie far behind or far ahead. The offset is exact, a power of two times the origin, and a plane
-    /// through the origin counts as before and behind.
+    /// through the origin counts as before and behind. Planes a step of rounding beside the origin lie 2^100 away:
+    /// of such a ray hits beyond that (1.3e30 lengths of its direction) may be missed.
     #[cold]
     #[inline(never)]
     fn parallel(ray: Ray) -> Self {

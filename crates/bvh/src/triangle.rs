@@ -14,6 +14,9 @@ use crate::lanes::{max, min};
 use crate::slabs::inverses;
 use juggler_math::{Ray, Vec3};
 
+/// No hit is farther: a distance that is no number of single precision is none that could be compared.
+pub(crate) const FARTHEST: f32 = f32::MAX;
+
 /// How the distance and the weights of a hit are found. Whether a ray passes inside of a triangle is told the same way
 /// by both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,6 +105,7 @@ impl Shear {
         };
         let (t_min, t_max) = (ray.t_min, ray.t_max);
         let t_clamped = self.clamp(t, corners);
+        let t_max = min(t_max, FARTHEST);
         (t <= t_max && end >= t_min && t_min <= t_clamped && t_clamped <= t_max).then_some((t_clamped, u, v))
     }
 
@@ -222,6 +226,15 @@ mod tests {
         // Edge-on: the plane holds the ray.
         assert_eq!(through(-Vec3::X, Vec3::X, -Vec3::Z), None);
         assert_eq!(intersect_triangle(&Ray::new(Vec3::Z, Vec3::ZERO), A, B, C), None);
+    }
+
+    /// The direction is so short that the distance in its units overflows.
+    #[test]
+    fn nothing_is_hit_at_infinity() {
+        let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0) * 1e20, -Vec3::Z * 1e-20);
+        let [a, b, c] = [A, B, C].map(|corner| corner * 1e20);
+        assert_eq!(intersect_triangle(&ray, a, b, c), None);
+        assert!(intersect_triangle(&Ray { direction: -Vec3::Z * 1e-18, ..ray }, a, b, c).is_some());
     }
 
     #[test]

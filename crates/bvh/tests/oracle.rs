@@ -123,6 +123,21 @@ fn parallel_packets_along_the_axes() {
     check("parallel", &shapes, &rays, 8);
 }
 
+/// Calls of 1 to 70 rays: part of a packet, part of a group, groups and a rest; of one octant and of several.
+#[test]
+fn calls_of_any_number_of_rays() {
+    let random = &mut Random::new(61);
+    let shapes = spheres(random, 300);
+    for count in 1..=70 {
+        let (eye, target) = (random.direction() * 3.0, random.point());
+        for spread in [0.01, 0.3, 3.0] {
+            let aim = |random: &mut Random| target + random.point() * spread - eye;
+            let rays: Vec<Ray> = (0..4 * count).map(|_| Ray::new(eye, aim(random))).collect();
+            check(&format!("{count} rays"), &shapes, &rays, count);
+        }
+    }
+}
+
 #[test]
 fn rays_of_a_packet_may_have_ended() {
     let random = &mut Random::new(41);

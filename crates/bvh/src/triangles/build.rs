@@ -1,6 +1,6 @@
 //! From triangles to their tree: boxes, tree, then the blocks of the leaves.
 
-use super::{Block, LANES, TriangleBvh, TriangleError};
+use super::{Block, IN_CACHE, LANES, TriangleBvh, TriangleError};
 use crate::build::{Extent, Items, extent, refit};
 use crate::node::{Child, Node};
 use crate::pages::Pages;
@@ -36,7 +36,8 @@ impl TriangleBvh {
             }
             Ok::<_, TriangleError>(())
         })?;
-        Ok(Self { bvh, blocks, test: TriangleTest::default() })
+        let in_flight = bvh.bytes() + blocks.bytes() > IN_CACHE;
+        Ok(Self { bvh, blocks, in_flight, test: TriangleTest::default() })
     }
 
     /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps

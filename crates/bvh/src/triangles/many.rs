@@ -3,11 +3,11 @@
 use super::meet::{Lines, settle, settle_fast, splat};
 use super::{Block, LANES, TriangleBvh, TriangleHit};
 use crate::Leaf;
-use crate::lanes::{Bits, Lanes, bits};
+use crate::lanes::{Bits, Lanes, bits, min};
 use crate::packet::{GROUP, Group, PACKET};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::Bundle;
-use crate::triangle::{Shear, TriangleTest};
+use crate::triangle::{FARTHEST, Shear, TriangleTest};
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 use std::ops::Range;
@@ -71,7 +71,7 @@ impl Packet {
         self.t_min = lanes.t_min;
         self.bundle = lanes.bundle;
         for (t_max, ray) in self.t_max.iter_mut().zip(rays) {
-            *t_max = ray.t_max;
+            *t_max = min(ray.t_max, FARTHEST);
         }
         for k in 0..3 {
             let axis = self.axes[k];

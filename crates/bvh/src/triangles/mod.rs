@@ -24,7 +24,7 @@ use one::One;
 use std::fmt;
 
 const LANES: usize = 8;
-/// Trees of up to as many bytes stay near enough (measured).
+/// Batches in trees of up to as many bytes are traced ray by ray: they stay near enough (measured).
 const IN_CACHE: usize = 8 << 20;
 const GROWTH: f32 = 8.0 * f32::EPSILON;
 
@@ -101,6 +101,8 @@ pub struct TriangleBvh {
     /// Its leaves name one block each: `items.start` is the block, `items.len()` the triangles in it.
     bvh: Bvh,
     blocks: Pages<Block>,
+    /// Whether rays wait for memory so long that several under way at once pay.
+    in_flight: bool,
     test: TriangleTest,
 }
 
@@ -181,7 +183,7 @@ impl TriangleBvh {
     pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
         let count = rays.len().min(hits.len());
         let (rays, hits) = (&mut rays[..count], &mut hits[..count]);
-        if self.is_beyond_cache() {
+        if self.in_flight {
             dispatch!(self.bvh.level, simd => self.closest_in_flight(simd, rays, hits));
             return;
         }
@@ -195,18 +197,13 @@ impl TriangleBvh {
     pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
         let count = rays.len().min(occluded.len());
         let (rays, occluded) = (&rays[..count], &mut occluded[..count]);
-        if self.is_beyond_cache() {
+        if self.in_flight {
             dispatch!(self.bvh.level, simd => self.any_in_flight(simd, rays, occluded));
             return;
         }
         for (ray, occluded) in rays.iter().zip(occluded) {
             *occluded = self.any(ray);
         }
-    }
-
-    /// Whether rays wait for memory so long that several under way at once pay.
-    fn is_beyond_cache(&self) -> bool {
-        self.bytes() > IN_CACHE
     }
 
     /// The same tree with another test of triangles than the watertight one.
@@ -218,6 +215,13 @@ impl TriangleBvh {
     /// [`Bvh::with_simd_level`].
     pub fn with_simd_level(mut self, level: crate::SimdLevel) -> Self {
         self.bvh = self.bvh.with_simd_level(level);
+        self
+    }
+
+    /// The same tree, whose batches keep several rays under way at once, or do not, whatever its size: for tests and
+    /// measurements.
+    pub fn with_rays_in_flight(mut self, in_flight: bool) -> Self {
+        self.in_flight = in_flight;
         self
     }
 

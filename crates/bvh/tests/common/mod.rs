@@ -1,7 +1,10 @@
 //! Random numbers, rays and shapes for the tests, and a visitor that keeps the nearest item.
 #![allow(dead_code)] // each test program uses its part
 
-use juggler_bvh::{Bvh, Leaf, Quality};
+pub mod mesh;
+pub mod rays;
+
+use juggler_bvh::{Bvh, Leaf, Quality, simd_levels};
 use juggler_math::{Aabb, Ray, Vec3, hash};
 use std::ops::Range;
 
@@ -126,16 +129,19 @@ pub fn brute_force<S: Shape>(shapes: &[S], ray: &Ray) -> Nearest {
     nearest.map(|(t, item)| (t.to_bits(), item))
 }
 
-/// Every way to trace, against trying every shape; `group` rays to a call.
+/// Every way to trace, against trying every shape; `group` rays to a call. The vector levels take turns.
 pub fn check<S: Shape>(name: &str, shapes: &[S], rays: &[Ray], group: usize) {
     let boxes: Vec<Aabb> = shapes.iter().map(Shape::bounds).collect();
     for quality in Quality::ALL {
         let bvh = Bvh::build(&boxes, quality);
+        let levels = simd_levels().into_iter().map(|level| (level, bvh.clone().with_simd_level(level)));
+        let levels: Vec<_> = levels.collect();
         for (number, rays) in rays.chunks(group).enumerate() {
-            let name = format!("{name}, {quality:?}, call {number}");
+            let (level, bvh) = &levels[number % levels.len()];
+            let name = format!("{name}, {quality:?}, {level:?}, call {number}");
             let expected: Vec<Nearest> = rays.iter().map(|ray| brute_force(shapes, ray)).collect();
-            check_closest(&name, &bvh, shapes, rays, &expected);
-            check_any(&name, &bvh, shapes, rays, &expected);
+            check_closest(&name, bvh, shapes, rays, &expected);
+            check_any(&name, bvh, shapes, rays, &expected);
         }
     }
 }

@@ -1,0 +1,110 @@
+//! The generated meshes with their six kinds of rays: every kernel at every quality and vector level finds the same
+//! bits, and brute force agrees on some. With `JUGGLER_RAYS` (rays of each kind) in the thousands the meshes have the
+//! size that they are measured with: `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test scenes`.
+
+#![allow(clippy::print_stdout, clippy::unwrap_used)] // a test's figures, and helpers of tests
+
+mod common;
+
+use common::mesh::{Kernels, Mesh, rays_to_try};
+use juggler_bvh::{Quality, TriangleBvh, TriangleHit, simd_levels};
+use juggler_math::{Ray, Vec3, vec3};
+use juggler_raybench::meshes::Recipe;
+use juggler_raybench::rays;
+
+const SMALL: usize = 512;
+/// Brute force takes so many triangle tests for each kind of rays.
+const TESTS: usize = 500_000;
+/// Rays of a call: two groups of packets and an odd rest.
+const CALL: usize = 69;
+
+fn check(small: &str, large: &str) {
+    let count = rays_to_try(SMALL);
+    let name = if count > 10_000 { large } else { small };
+    let made = Recipe::named(name).unwrap().make();
+    let tree = TriangleBvh::build(&made.positions, &made.triangles, Quality::Balanced).unwrap();
+    let sets = rays::make(&made, &tree, count);
+    let mesh = Mesh { positions: made.positions, triangles: made.triangles };
+    let kernels = Kernels::all(name, &mesh);
+    for set in sets {
+        for rays in set.rays.chunks(CALL) {
+            let expected: Vec<_> = rays.iter().map(|ray| tree.closest(ray)).collect();
+            kernels.iter().for_each(|kernels| kernels.check(rays, &expected));
+        }
+        let sample = (TESTS / mesh.triangles.len()).max(2);
+        for ray in set.rays.iter().step_by((set.rays.len() / sample).max(1)) {
+            assert_eq!(tree.closest(ray), mesh.closest(ray), "{name}, {}: {ray:?}", set.kind.name());
+        }
+        println!("{name}, {} triangles, {}: {} rays", mesh.triangles.len(), set.kind.name(), set.rays.len());
+    }
+}
+
+#[test]
+fn blob() {
+    check("blob:12", "blob");
+}
+
+#[test]
+fn classroom() {
+    check("classroom:2", "classroom");
+}
+
+#[test]
+fn hall() {
+    check("hall:4", "hall");
+}
+
+#[test]
+fn stadium() {
+    check("stadium:6", "stadium");
+}
+
+#[test]
+fn hairball() {
+    check("hairball:300", "hairball:8000");
+}
+
+#[test]
+fn terrain() {
+    check("terrain:64", "terrain:700");
+}
+
+/// More than 2^24 triangles, whose numbers no single-precision float can tell apart, of known places and heights.
+#[test]
+#[ignore = "takes 6 GB of memory and minutes"]
+fn more_than_sixteen_million_triangles() {
+    const EDGE: u32 = 2900;
+    let height = |x: u32, z: u32| ((x * 7 + z * 13) % 5) as f32 * 0.25;
+    let corner = |i: u32| vec3((i % (EDGE + 1)) as f32, 0.0, (i / (EDGE + 1)) as f32);
+    let positions = (0..(EDGE + 1) * (EDGE + 1)).map(|i| corner(i).with_y(height(i % (EDGE + 1), i / (EDGE + 1))));
+    let cells = (0..EDGE * EDGE).map(|i| i / EDGE * (EDGE + 1) + i % EDGE);
+    let triangles = cells.flat_map(|a| [[a, a + 1, a + EDGE + 1], [a + 1, a + EDGE + 2, a + EDGE + 1]]);
+    let mesh = Mesh { positions: positions.collect(), triangles: triangles.collect() };
+    assert!(mesh.triangles.len() > 1 << 24);
+    // One tree at a time: each takes more than a gigabyte.
+    for quality in Quality::ALL {
+        let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, quality).unwrap();
+        for level in simd_levels() {
+            find_what_is_known(&Kernels::new(&format!("{quality:?}"), &tree, level), &mesh);
+        }
+    }
+}
+
+/// Rays from above at a known point of a triangle.
+fn find_what_is_known(kernels: &Kernels, mesh: &Mesh) {
+    let random = &mut common::Random::new(24);
+    for _ in 0..rays_to_try(7000) / CALL {
+        let aims: Vec<(usize, Vec3)> = (0..CALL)
+            .map(|_| {
+                let triangle = random.below(mesh.triangles.len());
+                let [a, b, c] = mesh.corners(triangle);
+                (triangle, a * 0.5 + b * 0.25 + c * 0.25)
+            })
+            .collect();
+        let rays: Vec<Ray> = aims.iter().map(|(_, point)| Ray::new(point.with_y(8.0), -Vec3::Y)).collect();
+        let known = aims
+            .iter()
+            .map(|&(triangle, point)| Some(TriangleHit { t: 8.0 - point.y, u: 0.25, v: 0.25, index: triangle as u32 }));
+        kernels.check(&rays, &known.collect::<Vec<_>>());
+    }
+}
