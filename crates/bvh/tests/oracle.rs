@@ -94,6 +94,73 @@ fn random_boxes() {
     }
 }
 
+/// Boxes a few steps of rounding wide, far from the origin, and rays from among them.
+#[test]
+fn boxes_far_away() {
+    let random = &mut Random::new(71);
+    for distance in [1e3, 1e5, 1e7] {
+        let far = Vec3::new(1.0, -0.7, 0.3) * distance;
+        let point = |random: &mut Random| far + random.point() * (distance * 2e-6);
+        let shapes: Vec<Aabb> = (0..300)
+            .map(|_| {
+                let min = point(random);
+                Aabb { min, max: min.map(f32::next_up).map(f32::next_up) }
+            })
+            .collect();
+        let rays: Vec<Ray> = (0..2000)
+            .map(|_| {
+                let (from, to) = (point(random), shapes[random.below(300)]);
+                let target = [to.min, to.max, to.center()][random.below(3)];
+                Ray::new(from, if from == target { Vec3::X } else { target - from })
+            })
+            .collect();
+        check(&format!("{distance} away"), &shapes, &rays, 8);
+    }
+}
+
+/// A box that is met where it truly is, in double precision.
+#[derive(Clone, Copy)]
+struct Exact(Aabb);
+
+impl Shape for Exact {
+    fn bounds(&self) -> Aabb {
+        self.0
+    }
+
+    fn hit(&self, ray: &Ray) -> Option<f32> {
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (low, high) = ((self.0.min.as_dvec3() - origin) / direction, (self.0.max.as_dvec3() - origin) / direction);
+        let (enter, leave) = (low.min(high).max_element(), low.max(high).min_element());
+        let t = enter as f32;
+        (enter <= leave && ray.t_min <= t && t <= ray.t_max).then_some(t)
+    }
+}
+
+/// Rays that meet points exactly, through all the rounding of the boxes' tests; each point many times, so that a
+/// hit must not hide the others at its distance.
+#[test]
+fn points_are_met_and_none_hides_the_others() {
+    let random = &mut Random::new(81);
+    // Of few bits, so that several times the direction is exact.
+    let directions: Vec<Vec3> = (0..60).map(|_| (random.point() * 4096.0).round() + 0.5).collect();
+    let point = |i: usize| directions[i % 60] * [3.0, 5.0, 7.0][i % 3];
+    let mut shapes: Vec<Exact> = (0..720).map(|i| Exact(Aabb { min: point(i), max: point(i) })).collect();
+    for i in (1..shapes.len()).rev() {
+        shapes.swap(i, random.below(i + 1));
+    }
+    let rays: Vec<Ray> = (0..800)
+        .map(|_| {
+            let number = random.below(60);
+            let ray = Ray::new(Vec3::ZERO, directions[number]);
+            // An end as far away as the point.
+            if random.below(2) == 0 { ray } else { ray.up_to([3.0, 5.0, 7.0][number % 3]) }
+        })
+        .collect();
+    check("points", &shapes, &rays, 8);
+    let alike: Vec<Ray> = rays.iter().take(150).flat_map(|&ray| [ray; 9]).collect();
+    check("points, nine times the same ray", &shapes, &alike, 9);
+}
+
 #[test]
 fn bricks_whose_planes_hold_the_rays() {
     for (count, seed) in [(30, 21), (200, 22), (600, 23)] {

@@ -151,6 +151,23 @@ fn far_away() {
     }
 }
 
+/// Rays that start on a flat triangle and leave it by less than rounding: they meet it at a distance that is all
+/// rounding, and from just there on.
+#[test]
+fn a_hair_off_the_plane() {
+    let mesh = soup(18, 60, |random| [(); 3].map(|()| whole(random, 4).with_x(0.0)));
+    let (kernels, random) = (Kernels::all("a hair off the plane", &mesh), &mut Random::new(118));
+    for _ in 0..rays_to_try(SMALL) / 8 {
+        let origin = vec3(0.0, random.unit() * 3.0, random.unit() * 3.0);
+        let ray = Ray::new(origin, vec3([-1e-30, 1e-20][random.below(2)], random.unit() - 0.5, random.unit() - 0.5));
+        let from_there_on = |ray: &Ray| Ray { t_min: mesh.closest(ray).map_or(0.0, |hit| hit.t), ..*ray };
+        let rays = [ray, from_there_on(&ray)];
+        let expected = rays.map(|ray| mesh.closest(&ray));
+        kernels.iter().for_each(|kernels| kernels.check(&rays[1..], &expected[1..]));
+        kernels.iter().for_each(|kernels| kernels.check(&rays, &expected));
+    }
+}
+
 /// One corner that all share.
 #[test]
 fn a_fan() {

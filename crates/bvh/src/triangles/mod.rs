@@ -286,13 +286,19 @@ impl Block {
     #[inline(always)]
     fn test_bundle<S: Lanes>(&self, simd: S, bundle: &Bundle) -> u32 {
         let [a, b, c] = &self.vertices;
+        let (mut low, mut high) = ([simd.splat(0.0); 3], [simd.splat(0.0); 3]);
+        let mut size = simd.splat(0.0);
+        for axis in 0..3 {
+            let (a, b, c) = (simd.load(&a[axis]), simd.load(&b[axis]), simd.load(&c[axis]));
+            (low[axis], high[axis]) = (simd.least(a, simd.least(b, c)), simd.most(a, simd.most(b, c)));
+            size = simd.most(high[axis] - low[axis], size);
+        }
         let mut enter = simd.splat(bundle.t_min);
         let mut leave = simd.splat(bundle.t_max);
         for axis in 0..3 {
-            let (a, b, c) = (simd.load(&a[axis]), simd.load(&b[axis]), simd.load(&c[axis]));
-            let (low, high) = (simd.least(a, simd.least(b, c)), simd.most(a, simd.most(b, c)));
-            // As much as the boxes of single triangles are grown, and more.
-            let room = (high - low) * GROWTH + (low.abs() + high.abs()) * GROWTH;
+            let (low, high) = (low[axis], high[axis]);
+            // As much as the boxes of single triangles are grown, and more: along each axis by the largest side.
+            let room = (size + low.abs() + high.abs()) * GROWTH;
             let (low, high) = (low - room, high + room);
             let (near, far) = if bundle.side[axis] == 0 { (low, high) } else { (high, low) };
             enter = simd.most((near - bundle.near_origin[axis]) * bundle.near_inverse[axis], enter);
