@@ -8,6 +8,7 @@ mod common;
 use common::Random;
 use common::mesh::{Kernels, Mesh, rays_to_try};
 use common::rays::{Aim, cut};
+use juggler_bvh::{Quality, TriangleBvh, TriangleTest, simd_levels};
 use juggler_math::{Ray, Vec3, vec3};
 
 /// Small enough that brute force is quick.
@@ -54,6 +55,28 @@ fn few_and_many_triangles() {
     for (count, size) in [(1, 1.0), (2, 1.0), (7, 0.5), (8, 0.5), (9, 1.0), (65, 0.3), (500, 0.2)] {
         check(&format!("{count} triangles"), &soup(count as u32, count, |random| near(random, size)), 100);
     }
+}
+
+/// The fast test answers a little differently, but in every kernel the same.
+#[test]
+fn the_fast_test_is_the_same_in_every_kernel() {
+    let mesh = soup(77, 300, |random| near(random, 0.3));
+    let (aim, random) = (Aim::at(&mesh), &mut Random::new(78));
+    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Balanced).unwrap();
+    let tree = tree.with_test(TriangleTest::Fast);
+    let (mut tried, mut off) = (0, 0);
+    while tried < rays_to_try(SMALL) {
+        let rays = aim.call(random);
+        let expected: Vec<_> = rays.iter().map(|ray| tree.closest(ray)).collect();
+        for level in simd_levels() {
+            Kernels::new("fast", &tree, level).check(&rays, &expected);
+        }
+        let exact = rays.iter().map(|ray| mesh.closest(ray));
+        off +=
+            expected.iter().zip(exact).filter(|(fast, exact)| fast.map(|h| h.index) != exact.map(|h| h.index)).count();
+        tried += rays.len();
+    }
+    assert!(off * 50 < tried, "{off} of {tried} rays hit something else than by the exact test");
 }
 
 #[test]
