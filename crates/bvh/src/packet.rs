@@ -13,13 +13,15 @@ use crate::slabs::{Bundle, Extent, Slabs};
 use crate::stack::{Stack, distance};
 use crate::{Bvh, Leaf};
 use fearless_simd::dispatch;
-use juggler_math::Ray;
+use juggler_math::{Aabb, Ray};
 
 /// Most rays that are traced together.
 pub const PACKET: usize = WIDTH;
 /// Rays whose interval is tested as one: several packets, for the nodes on the way are mostly the same.
 pub(crate) const GROUP: usize = PACKETS * PACKET;
 const PACKETS: usize = 4;
+/// Rays are neighbours when origins differ by less than this share of the scene, and directions of their length.
+const NARROW: f32 = 0.25;
 /// With so few rays left in a box they go on alone.
 const FEW: u32 = 2;
 
@@ -28,11 +30,12 @@ pub(crate) struct Group {
     pub bundle: Bundle,
     packets: [RayLanes; PACKETS],
     count: usize,
+    extent: Extent,
 }
 
 impl Group {
     pub fn new() -> Self {
-        Self { bundle: Bundle::default(), packets: [RayLanes::default(); PACKETS], count: 0 }
+        Self { bundle: Bundle::default(), packets: [RayLanes::default(); PACKETS], count: 0, extent: Extent::default() }
     }
 
     /// Takes at most [`GROUP`] rays in; `false` where their directions do not share an octant or a ray may start
@@ -49,10 +52,20 @@ impl Group {
                 None => return false,
             }
         }
-        if let Some(all) = all {
-            self.bundle = all.bundle();
-        }
-        all.is_some()
+        let Some(all) = all else { return false };
+        (self.bundle, self.extent) = (all.bundle(), all);
+        true
+    }
+
+    /// Whether the rays are neighbours: an interval around rays that share no more than an octant would meet most of
+    /// the tree.
+    #[inline(always)]
+    pub fn is_narrow(&self, scene: &Aabb) -> bool {
+        let Extent { low, high, .. } = &self.extent;
+        let size = scene.extent().max_element();
+        let length = (3..6).fold(0.0, |length, i| max(max(high[i].abs(), low[i].abs()), length));
+        let is_near = (0..3).all(|i| high[i] - low[i] <= size * NARROW);
+        is_near && (3..6).all(|i| high[i] - low[i] <= length * NARROW)
     }
 
     /// The packets that hold rays.
@@ -91,7 +104,7 @@ impl Bvh {
         let (mut stack, mut group) = (Stack::new(), Group::new());
         for (number, rays) in rays.chunks_mut(GROUP).enumerate() {
             let first = number * GROUP;
-            if group.fill(simd, rays) {
+            if group.fill(simd, rays) && group.is_narrow(&self.bounds) {
                 self.closest_group(simd, &mut stack, first, rays, &mut group, leaf);
             } else {
                 self.closest_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf);

@@ -149,7 +149,7 @@ impl Slabs {
 }
 
 /// Extremes of several rays: origin, direction, `t_min`, `t_max`; and the signs that all directions have.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Extent {
     pub low: [f32; WIDTH],
     pub high: [f32; WIDTH],

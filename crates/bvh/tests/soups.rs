@@ -202,11 +202,11 @@ fn a_fan() {
 #[test]
 fn rays_without_a_place_are_not_traced() {
     let mesh = soup(34, 50, |random| near(random, 1.0));
-    let tree = juggler_bvh::TriangleBvh::build(&mesh.positions, &mesh.triangles, Default::default()).unwrap();
+    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Default::default()).unwrap();
     let rays: Vec<Ray> = (0..60).map(|i| Ray::new(Vec3::Z * 5.0, mesh.positions[i] - Vec3::Z * 5.0)).collect();
     for in_flight in [false, true] {
         let tree = tree.clone().with_rays_in_flight(in_flight);
-        for closest in [juggler_bvh::TriangleBvh::closest_batch, juggler_bvh::TriangleBvh::closest_packet] {
+        for closest in [TriangleBvh::closest_batch, TriangleBvh::closest_packet] {
             let (mut ends, mut hits) = (rays.clone(), [None; 37]);
             closest(&tree, &mut ends, &mut hits);
             assert_eq!(hits.to_vec(), rays[..37].iter().map(|ray| tree.closest(ray)).collect::<Vec<_>>());

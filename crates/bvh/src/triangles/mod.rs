@@ -149,7 +149,7 @@ impl TriangleBvh {
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
         let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, self));
         for (rays, hits) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)) {
-            if group.fill(simd, rays) && many.fill(rays, &group) {
+            if group.fill(simd, rays) && group.is_narrow(&self.bvh.bounds) && many.fill(rays, &group) {
                 self.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
                 hits.copy_from_slice(&many.hits[..hits.len()]);
                 continue;
