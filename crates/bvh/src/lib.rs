@@ -55,7 +55,7 @@ pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality, RefitError};
 pub use inspect::Visits;
 pub use packet::PACKET;
 pub use triangle::{TriangleTest, intersect_triangle};
-pub use triangles::{TriangleBvh, TriangleError, TriangleHit};
+pub use triangles::{Filtered, TriangleBvh, TriangleError, TriangleHit};
 
 /// A kind of vector unit, known to be there.
 pub use fearless_simd::Level as SimdLevel;

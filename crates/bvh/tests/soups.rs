@@ -8,7 +8,7 @@ mod common;
 use common::Random;
 use common::mesh::{Kernels, Mesh, rays_to_try};
 use common::rays::{Aim, cut};
-use juggler_bvh::{Quality, TriangleBvh, TriangleTest, simd_levels};
+use juggler_bvh::{Quality, TriangleBvh, TriangleHit, TriangleTest, intersect_triangle, simd_levels};
 use juggler_math::{Ray, Vec3, vec3};
 
 /// Small enough that brute force is quick.
@@ -77,6 +77,50 @@ fn the_fast_test_is_the_same_in_every_kernel() {
         tried += rays.len();
     }
     assert!(off * 50 < tried, "{off} of {tried} rays hit something else than by the exact test");
+}
+
+/// Hits that a filter refuses do not count, in any kernel: as if each ray had its own triangles.
+#[test]
+fn refused_hits_do_not_count() {
+    let mesh = soup(87, 120, |random| near(random, 0.5));
+    let (aim, random) = (Aim::at(&mesh), &mut Random::new(88));
+    let counts = |ray: usize, hit: &TriangleHit| !(ray + hit.index as usize).is_multiple_of(3);
+    let nearest = |number: usize, ray: &Ray| {
+        let hits = (0..mesh.triangles.len()).filter_map(|index| {
+            let [a, b, c] = mesh.corners(index);
+            let (t, u, v) = intersect_triangle(ray, a, b, c)?;
+            Some(TriangleHit { t, u, v, index: index as u32 })
+        });
+        let hits = hits.filter(|hit| counts(number, hit));
+        hits.min_by(|a, b| a.t.total_cmp(&b.t).then(a.index.cmp(&b.index)))
+    };
+    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Balanced).unwrap();
+    let mut differ = 0;
+    for round in 0..rays_to_try(SMALL) / 35 {
+        let rays = aim.call(random);
+        let expected: Vec<_> = rays.iter().enumerate().map(|(number, ray)| nearest(number, ray)).collect();
+        let is_hit: Vec<bool> = expected.iter().map(Option::is_some).collect();
+        differ += rays.iter().zip(&expected).filter(|(ray, expected)| tree.closest(ray) != **expected).count();
+        for level in simd_levels() {
+            for in_flight in [false, true] {
+                let tree = tree.clone().with_simd_level(level).with_rays_in_flight(in_flight);
+                let some = tree.filtered(counts);
+                let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+                some.closest_batch(&mut rays.clone(), &mut hits);
+                assert_eq!(hits, expected, "batch, round {round}, {level:?}");
+                some.closest_packet(&mut rays.clone(), &mut hits);
+                assert_eq!(hits, expected, "packet, round {round}, {level:?}");
+                some.any_batch(&rays, &mut occluded);
+                assert_eq!(occluded, is_hit, "any, batch, round {round}, {level:?}");
+                some.any_packet(&rays, &mut occluded);
+                assert_eq!(occluded, is_hit, "any, packet, round {round}, {level:?}");
+                if let (Some(ray), Some(expected)) = (rays.first(), expected.first()) {
+                    assert_eq!((some.closest(ray), some.any(ray)), (*expected, expected.is_some()));
+                }
+            }
+        }
+    }
+    assert!(differ > 100, "only {differ} rays lost their hit");
 }
 
 #[test]

@@ -4,8 +4,10 @@
 //! Each step takes one ray through one node or one leaf, asks for what this ray needs next to be fetched, and
 //! turns to the next ray; finished rays are replaced. The rays need nothing in common.
 
+use super::TriangleHit;
+use super::filter::Filter;
 use super::one::One;
-use super::{TriangleBvh, TriangleHit};
+use super::query::Query;
 use crate::Leaf;
 use crate::lanes::{Lanes, prefetch};
 use crate::node::Child;
@@ -20,36 +22,36 @@ use juggler_math::Ray;
 const IN_FLIGHT: usize = 16;
 
 /// A ray under way.
-struct Flight<'a, S: Simd> {
+struct Flight<'a, S: Simd, F> {
     /// Number of the ray in the slice.
     number: usize,
     ray: Ray,
     slabs: Slabs,
-    one: One<'a, S>,
+    one: One<'a, S, F>,
     current: Child,
     stack: Stack,
 }
 
-impl<'a, S: Lanes> Flight<'a, S> {
+impl<'a, S: Lanes, F: Filter> Flight<'a, S, F> {
     #[inline(always)]
-    fn new(simd: S, tree: &'a TriangleBvh, number: usize, ray: &Ray) -> Self {
+    fn new(simd: S, query: Query<'a, F>, number: usize, ray: &Ray) -> Self {
         let slabs = Slabs::of_ray(simd, ray);
-        let one = One::new(simd, tree, ray, &slabs);
+        let one = One::new(simd, query, ray, &slabs);
         Self { number, ray: *ray, slabs, one, current: Child::ROOT, stack: Stack::new() }
     }
 
     #[inline(always)]
-    fn restart(&mut self, simd: S, tree: &'a TriangleBvh, number: usize, ray: &Ray) {
+    fn restart(&mut self, simd: S, query: Query<'a, F>, number: usize, ray: &Ray) {
         self.number = number;
         self.ray = *ray;
         self.slabs = Slabs::of_ray(simd, ray);
-        self.one = One::new(simd, tree, ray, &self.slabs);
+        self.one = One::new(simd, query, ray, &self.slabs);
         self.current = Child::ROOT;
         self.stack.truncate(0);
     }
 }
 
-impl TriangleBvh {
+impl<F: Filter> Query<'_, F> {
     /// [`TriangleBvh::closest`] of all rays.
     #[inline(always)]
     pub(super) fn closest_in_flight<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
@@ -68,7 +70,7 @@ impl TriangleBvh {
                 rays[number].t_max = hit.t;
             }
             match rays.get(waiting) {
-                Some(ray) => flight.restart(simd, self, waiting, ray),
+                Some(ray) => flight.restart(simd, *self, waiting, ray),
                 None => _ = flights.swap_remove(at),
             }
             waiting += 1;
@@ -87,7 +89,7 @@ impl TriangleBvh {
             let Some(found) = self.any_step(simd, flight) else { continue };
             occluded[flight.number] = found;
             match rays.get(waiting) {
-                Some(ray) => flight.restart(simd, self, waiting, ray),
+                Some(ray) => flight.restart(simd, *self, waiting, ray),
                 None => _ = flights.swap_remove(at),
             }
             waiting += 1;
@@ -96,23 +98,23 @@ impl TriangleBvh {
 
     /// The first rays.
     #[inline(always)]
-    fn take_off<'a, S: Lanes>(&'a self, simd: S, rays: &[Ray]) -> ArrayVec<Flight<'a, S>, IN_FLIGHT> {
+    fn take_off<S: Lanes>(&self, simd: S, rays: &[Ray]) -> ArrayVec<Flight<'_, S, F>, IN_FLIGHT> {
         let mut flights = ArrayVec::new();
         for (number, ray) in rays.iter().enumerate().take(IN_FLIGHT) {
-            flights.push(Flight::new(simd, self, number, ray));
+            flights.push(Flight::new(simd, *self, number, ray));
         }
         flights
     }
 
     /// Whether the ray goes on.
     #[inline(always)]
-    fn closest_step<S: Lanes>(&self, simd: S, flight: &mut Flight<S>) -> bool {
+    fn closest_step<S: Lanes>(&self, simd: S, flight: &mut Flight<S, F>) -> bool {
         let next = if flight.current.is_leaf() {
-            flight.one.closest(0, &mut flight.ray, flight.current.items());
+            flight.one.closest(flight.number, &mut flight.ray, flight.current.items());
             flight.slabs.t_max = cull_distance(flight.ray.t_max);
             None
         } else {
-            let node = &self.bvh.nodes[flight.current.0 as usize];
+            let node = &self.tree.bvh.nodes[flight.current.0 as usize];
             let (mask, enter) = node.test(simd, &flight.slabs);
             nearest(
                 mask,
@@ -127,14 +129,14 @@ impl TriangleBvh {
 
     /// The answer, or `None` if the ray goes on.
     #[inline(always)]
-    fn any_step<S: Lanes>(&self, simd: S, flight: &mut Flight<S>) -> Option<bool> {
+    fn any_step<S: Lanes>(&self, simd: S, flight: &mut Flight<S, F>) -> Option<bool> {
         let next = if flight.current.is_leaf() {
-            if flight.one.any(0, &flight.ray, flight.current.items()) {
+            if flight.one.any(flight.number, &flight.ray, flight.current.items()) {
                 return Some(true);
             }
             None
         } else {
-            let node = &self.bvh.nodes[flight.current.0 as usize];
+            let node = &self.tree.bvh.nodes[flight.current.0 as usize];
             let (mask, _) = node.test(simd, &flight.slabs);
             first(node, mask, &mut flight.stack).map(|child| child.0)
         };
@@ -143,7 +145,7 @@ impl TriangleBvh {
 
     /// Asks for the next child, or the next on the stack, and says whether there is one.
     #[inline(always)]
-    fn fetch<S: Lanes>(&self, flight: &mut Flight<S>, next: Option<u32>) -> bool {
+    fn fetch<S: Lanes>(&self, flight: &mut Flight<S, F>, next: Option<u32>) -> bool {
         let next = match next {
             Some(word) => Some(Child(word)),
             None => next_below(&mut flight.stack, 0, flight.slabs.t_max),
@@ -151,9 +153,9 @@ impl TriangleBvh {
         let Some(child) = next else { return false };
         flight.current = child;
         if child.is_leaf() {
-            prefetch(&self.blocks, child.items().start as usize);
+            prefetch(&self.tree.blocks, child.items().start as usize);
         } else {
-            prefetch(&self.bvh.nodes, child.0 as usize);
+            prefetch(&self.tree.bvh.nodes, child.0 as usize);
         }
         true
     }

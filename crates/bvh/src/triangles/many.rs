@@ -1,7 +1,9 @@
 //! Eight rays at the leaves: one triangle at a time, or eight triangles for each ray when few rays are left.
 
+use super::filter::Filter;
 use super::meet::{Lines, settle, settle_fast, splat};
-use super::{Block, LANES, TriangleBvh, TriangleHit};
+use super::query::Query;
+use super::{Block, LANES, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes, bits, min};
 use crate::packet::{GROUP, Group, PACKET};
@@ -13,8 +15,11 @@ use juggler_math::Ray;
 use std::ops::Range;
 
 /// Visitor for a group of packets, used again for the next group.
-pub(super) struct Many<'a, S: Simd> {
+pub(super) struct Many<'a, S: Simd, F> {
     simd: S,
+    filter: F,
+    /// Number of the group's first ray.
+    first: usize,
     blocks: &'a [Block],
     test: TriangleTest,
     packets: [Packet; GROUP / PACKET],
@@ -34,16 +39,18 @@ struct Packet {
     bundle: Bundle,
 }
 
-impl<'a, S: Lanes> Many<'a, S> {
-    pub fn new(simd: S, tree: &'a TriangleBvh) -> Self {
+impl<'a, S: Lanes, F: Filter> Many<'a, S, F> {
+    pub fn new(simd: S, query: Query<'a, F>) -> Self {
         let packets = [Packet::default(); GROUP / PACKET];
-        Self { simd, blocks: &tree.blocks, test: tree.test, packets, hits: [None; GROUP] }
+        let Query { tree, filter } = query;
+        Self { simd, filter, first: 0, blocks: &tree.blocks, test: tree.test, packets, hits: [None; GROUP] }
     }
 
     /// Forgets what it has found and turns to other rays; `false` where those of a packet have no longest axis in
     /// common.
     #[inline(always)]
-    pub fn fill(&mut self, rays: &[Ray], group: &Group) -> bool {
+    pub fn fill(&mut self, first: usize, rays: &[Ray], group: &Group) -> bool {
+        self.first = first;
         self.hits = [None; GROUP];
         for ((packet, rays), lanes) in self.packets.iter_mut().zip(rays.chunks(PACKET)).zip(group.packets()) {
             if !packet.fill(self.simd, rays, lanes) {
@@ -143,10 +150,10 @@ impl Packet {
     }
 }
 
-impl<S: Lanes> Many<'_, S> {
+impl<S: Lanes, F: Filter> Many<'_, S, F> {
     #[inline(always)]
     fn keep(&mut self, lane: usize, hit: TriangleHit, ray: &mut Ray) {
-        if hit.is_before(&self.hits[lane]) {
+        if hit.is_before(&self.hits[lane]) && self.filter.accepts(self.first + lane, &hit) {
             self.hits[lane] = Some(hit);
             ray.t_max = hit.t;
             self.packets[lane / LANES].t_max[lane % LANES] = hit.t;
@@ -169,7 +176,7 @@ impl<S: Lanes> Many<'_, S> {
     }
 }
 
-impl<S: Lanes> Leaf for Many<'_, S> {
+impl<S: Lanes, F: Filter> Leaf for Many<'_, S, F> {
     #[inline(always)]
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
         let blocks = self.blocks;
@@ -187,7 +194,8 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let block = &self.blocks[items.start as usize];
         let (shear, candidates) = self.alone(lane, ray, block, items.len());
         for number in Bits(candidates) {
-            if block.hit(self.test, &shear, ray, number).is_some() {
+            let hit = block.hit(self.test, &shear, ray, number);
+            if hit.is_some_and(|hit| self.filter.accepts(self.first + lane, &hit)) {
                 return true;
             }
         }
@@ -214,7 +222,15 @@ impl<S: Lanes> Leaf for Many<'_, S> {
         let packet = &self.packets[first / LANES];
         let mut found = 0;
         for number in Bits(self.candidates(block, first, items.len())) {
-            found |= packet.rays_at(self.simd, self.test, block, (number, active & !found)).0;
+            let (mask, [t, u, v]) = packet.rays_at(self.simd, self.test, block, (number, active & !found));
+            if F::ALL {
+                found |= mask;
+                continue;
+            }
+            for lane in Bits(mask) {
+                let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number] };
+                found |= u32::from(self.filter.accepts(self.first + first + lane, &hit)) << lane;
+            }
         }
         found
     }

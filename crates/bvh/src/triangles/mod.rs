@@ -1,26 +1,27 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
 mod build;
+mod filter;
 mod in_flight;
 mod many;
 mod meet;
 mod one;
+mod query;
 
 use crate::lanes::{Lanes, bits};
-use crate::node::Child;
-use crate::packet::{GROUP, Group};
 use crate::pages::Pages;
 use crate::slabs::{Bundle, Slabs};
-use crate::stack::Stack;
 use crate::triangle::{Shear, TriangleTest};
 use crate::{BuildStats, Bvh, RefitError};
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
+use filter::{All, Where};
 use juggler_math::{Aabb, Ray, Vec3};
-use many::Many;
 use meet::Corner;
 use one::One;
+pub use query::Filtered;
+use query::Query;
 use std::fmt;
 
 const LANES: usize = 8;
@@ -109,101 +110,45 @@ pub struct TriangleBvh {
 impl TriangleBvh {
     /// The closest hit; of hits at equal distance that on the triangle with the smallest number.
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
-        dispatch!(self.bvh.level, simd => self.closest_one(simd, &mut Stack::new(), ray))
+        self.all().closest(ray)
     }
 
     /// Whether any triangle is hit.
     pub fn any(&self, ray: &Ray) -> bool {
-        dispatch!(self.bvh.level, simd => self.any_one(simd, &mut Stack::new(), ray))
-    }
-
-    #[inline(always)]
-    fn closest_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> Option<TriangleHit> {
-        let slabs = Slabs::of_ray(simd, ray);
-        let mut one = One::new(simd, self, ray, &slabs);
-        self.bvh.closest_below(simd, Child::ROOT, stack, (0, &mut { *ray }), slabs, &mut one);
-        one.hit
-    }
-
-    #[inline(always)]
-    fn any_one<S: Lanes>(&self, simd: S, stack: &mut Stack, ray: &Ray) -> bool {
-        let slabs = Slabs::of_ray(simd, ray);
-        let mut one = One::new(simd, self, ray, &slabs);
-        self.bvh.any_below(simd, Child::ROOT, stack, (0, ray), &slabs, &mut one)
+        self.all().any(ray)
     }
 
     /// [`TriangleBvh::closest`] for coherent rays, see [`Bvh::closest_packet`]. The answers replace what
     /// `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let count = rays.len().min(hits.len());
-        dispatch!(self.bvh.level, simd => self.closest_groups(simd, &mut rays[..count], &mut hits[..count]));
+        self.all().closest_packet(rays, hits);
     }
 
     /// [`TriangleBvh::any`] for coherent rays, see [`Bvh::any_packet`].
     pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool]) {
-        let count = rays.len().min(occluded.len());
-        dispatch!(self.bvh.level, simd => self.any_groups(simd, &rays[..count], &mut occluded[..count]));
-    }
-
-    #[inline(always)]
-    fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, self));
-        for (rays, hits) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)) {
-            if group.fill(simd, rays) && group.is_narrow(&self.bvh.bounds) && many.fill(rays, &group) {
-                self.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
-                hits.copy_from_slice(&many.hits[..hits.len()]);
-                continue;
-            }
-            for (ray, hit) in rays.iter_mut().zip(hits) {
-                *hit = self.closest(ray);
-                ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
-        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, self));
-        for (rays, occluded) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)) {
-            if group.fill(simd, rays) && many.fill(rays, &group) {
-                let found = self.bvh.any_group(simd, &mut stack, 0, rays, &group, &mut many);
-                for (lane, occluded) in occluded.iter_mut().enumerate() {
-                    *occluded = found >> lane & 1 != 0;
-                }
-                continue;
-            }
-            for (ray, occluded) in rays.iter().zip(occluded) {
-                *occluded = self.any(ray);
-            }
-        }
+        self.all().any_packet(rays, occluded);
     }
 
     /// [`TriangleBvh::closest`] for any number of unrelated rays, see [`Bvh::closest_batch`]. The answers
     /// replace what `hits` held; rays without a place in it are not traced. Each ray ends at its hit.
     pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let count = rays.len().min(hits.len());
-        let (rays, hits) = (&mut rays[..count], &mut hits[..count]);
-        if self.in_flight {
-            dispatch!(self.bvh.level, simd => self.closest_in_flight(simd, rays, hits));
-            return;
-        }
-        for (ray, hit) in rays.iter_mut().zip(hits) {
-            *hit = self.closest(ray);
-            ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
-        }
+        self.all().closest_batch(rays, hits);
     }
 
     /// [`TriangleBvh::any`] for any number of unrelated rays, see [`Bvh::any_batch`].
     pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
-        let count = rays.len().min(occluded.len());
-        let (rays, occluded) = (&rays[..count], &mut occluded[..count]);
-        if self.in_flight {
-            dispatch!(self.bvh.level, simd => self.any_in_flight(simd, rays, occluded));
-            return;
-        }
-        for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = self.any(ray);
-        }
+        self.all().any_batch(rays, occluded);
+    }
+
+    fn all(&self) -> Query<'_, All> {
+        Query { tree: self, filter: All }
+    }
+
+    /// The same tree, of whose hits only those count that `accepts` lets pass, given the number of the ray in
+    /// the slice (0 for one ray) and the hit: for cut-outs and masks. It may be asked about hits that turn out not
+    /// to be the closest, in any order, and must always answer the same.
+    pub fn filtered<F: Fn(usize, &TriangleHit) -> bool + Copy>(&self, accepts: F) -> Filtered<'_, F> {
+        Filtered { query: Query { tree: self, filter: Where(accepts) } }
     }
 
     /// The same tree with another test of triangles than the watertight one.
@@ -228,7 +173,7 @@ impl TriangleBvh {
     /// What the search for the closest hit looks at.
     pub fn visits(&self, ray: &Ray) -> crate::Visits {
         let simd = fearless_simd::Level::baseline();
-        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut One::new(simd, self, ray, &Slabs::of_ray(simd, ray))))
+        dispatch!(simd, simd => self.bvh.closest_counted(&mut { *ray }, &mut One::new(simd, self.all(), ray, &Slabs::of_ray(simd, ray))))
     }
 
     /// A box around all triangles, at most a few millionths larger than needed; empty when there are none.

@@ -1,0 +1,163 @@
+//! The questions that rays ask, kernel by kernel, of all triangles or of some.
+
+use super::filter::{Filter, Where};
+use super::many::Many;
+use super::one::One;
+use super::{TriangleBvh, TriangleHit};
+use crate::lanes::Lanes;
+use crate::node::Child;
+use crate::packet::{GROUP, Group};
+use crate::slabs::Slabs;
+use crate::stack::Stack;
+use fearless_simd::dispatch;
+use juggler_math::Ray;
+
+/// A tree and which of its hits count.
+#[derive(Clone, Copy)]
+pub(super) struct Query<'a, F> {
+    pub tree: &'a TriangleBvh,
+    pub filter: F,
+}
+
+impl<F: Filter> Query<'_, F> {
+    pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        self.closest_of(0, ray)
+    }
+
+    pub fn any(&self, ray: &Ray) -> bool {
+        self.any_of(0, ray)
+    }
+
+    /// The ray with this number.
+    fn closest_of(&self, number: usize, ray: &Ray) -> Option<TriangleHit> {
+        dispatch!(self.tree.bvh.level, simd => self.closest_one(simd, number, ray))
+    }
+
+    /// The ray with this number.
+    fn any_of(&self, number: usize, ray: &Ray) -> bool {
+        dispatch!(self.tree.bvh.level, simd => self.any_one(simd, number, ray))
+    }
+
+    #[inline(always)]
+    fn closest_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> Option<TriangleHit> {
+        let slabs = Slabs::of_ray(simd, ray);
+        let mut one = One::new(simd, *self, ray, &slabs);
+        self.tree.bvh.closest_below(simd, Child::ROOT, &mut Stack::new(), (number, &mut { *ray }), slabs, &mut one);
+        one.hit
+    }
+
+    #[inline(always)]
+    fn any_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> bool {
+        let slabs = Slabs::of_ray(simd, ray);
+        let mut one = One::new(simd, *self, ray, &slabs);
+        self.tree.bvh.any_below(simd, Child::ROOT, &mut Stack::new(), (number, ray), &slabs, &mut one)
+    }
+
+    pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let count = rays.len().min(hits.len());
+        dispatch!(self.tree.bvh.level, simd => self.closest_groups(simd, &mut rays[..count], &mut hits[..count]));
+    }
+
+    pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool]) {
+        let count = rays.len().min(occluded.len());
+        dispatch!(self.tree.bvh.level, simd => self.any_groups(simd, &rays[..count], &mut occluded[..count]));
+    }
+
+    #[inline(always)]
+    fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, *self));
+        for (number, (rays, hits)) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)).enumerate() {
+            let first = number * GROUP;
+            if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && many.fill(first, rays, &group) {
+                self.tree.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
+                hits.copy_from_slice(&many.hits[..hits.len()]);
+                continue;
+            }
+            for (lane, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
+                *hit = self.closest_of(first + lane, ray);
+                ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
+        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, *self));
+        for (number, (rays, occluded)) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)).enumerate() {
+            let first = number * GROUP;
+            if group.fill(simd, rays) && many.fill(first, rays, &group) {
+                let found = self.tree.bvh.any_group(simd, &mut stack, 0, rays, &group, &mut many);
+                for (lane, occluded) in occluded.iter_mut().enumerate() {
+                    *occluded = found >> lane & 1 != 0;
+                }
+                continue;
+            }
+            for (lane, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+                *occluded = self.any_of(first + lane, ray);
+            }
+        }
+    }
+
+    pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let count = rays.len().min(hits.len());
+        let (rays, hits) = (&mut rays[..count], &mut hits[..count]);
+        if self.tree.in_flight {
+            dispatch!(self.tree.bvh.level, simd => self.closest_in_flight(simd, rays, hits));
+            return;
+        }
+        for (number, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
+            *hit = self.closest_of(number, ray);
+            ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
+        }
+    }
+
+    pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
+        let count = rays.len().min(occluded.len());
+        let (rays, occluded) = (&rays[..count], &mut occluded[..count]);
+        if self.tree.in_flight {
+            dispatch!(self.tree.bvh.level, simd => self.any_in_flight(simd, rays, occluded));
+            return;
+        }
+        for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+            *occluded = self.any_of(number, ray);
+        }
+    }
+}
+
+/// A tree of whose hits only some count; see [`TriangleBvh::filtered`]. The calls are those of the tree.
+#[derive(Clone, Copy)]
+pub struct Filtered<'a, F> {
+    pub(super) query: Query<'a, Where<F>>,
+}
+
+impl<F: Fn(usize, &TriangleHit) -> bool + Copy> Filtered<'_, F> {
+    /// [`TriangleBvh::closest`].
+    pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        self.query.closest(ray)
+    }
+
+    /// [`TriangleBvh::any`].
+    pub fn any(&self, ray: &Ray) -> bool {
+        self.query.any(ray)
+    }
+
+    /// [`TriangleBvh::closest_packet`].
+    pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        self.query.closest_packet(rays, hits);
+    }
+
+    /// [`TriangleBvh::any_packet`].
+    pub fn any_packet(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.query.any_packet(rays, occluded);
+    }
+
+    /// [`TriangleBvh::closest_batch`].
+    pub fn closest_batch(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        self.query.closest_batch(rays, hits);
+    }
+
+    /// [`TriangleBvh::any_batch`].
+    pub fn any_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.query.any_batch(rays, occluded);
+    }
+}
