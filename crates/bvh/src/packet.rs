@@ -88,8 +88,8 @@ impl Group {
 }
 
 impl Bvh {
-    /// [`Bvh::closest`] for rays that go the same way; a ray's lane is its number in the slice. More than
-    /// [`PACKET`] rays are taken in groups of as many. Rays that do not share an octant are traced alone.
+    /// [`Bvh::closest`] for rays that go the same way; a ray's lane is its number in the slice. They
+    /// are taken 32 at a time, [`PACKET`] side by side. Rays that are no neighbours are traced alone.
     pub fn closest_packet(&self, rays: &mut [Ray], leaf: &mut impl Leaf) {
         dispatch!(self.level, simd => self.closest_groups(simd, rays, leaf));
     }
@@ -107,7 +107,7 @@ impl Bvh {
             if group.fill(simd, rays) && group.is_narrow(&self.bounds) {
                 self.closest_group(simd, &mut stack, first, rays, &mut group, leaf);
             } else {
-                self.closest_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf);
+                self.closest_alone(simd, &mut stack, first, rays, leaf);
             }
         }
     }
@@ -185,16 +185,13 @@ impl Bvh {
         )
     }
 
-    /// Traces the active rays one by one through the subtree at `from`.
-    #[allow(clippy::too_many_arguments)]
+    /// Traces the rays one by one.
     #[inline(never)]
     fn closest_alone<S: Lanes>(
         &self,
         simd: S,
-        from: Child,
         stack: &mut Stack,
-        base: usize,
-        active: u32,
+        first: usize,
         rays: &mut [Ray],
         leaf: &mut impl Leaf,
     ) {
@@ -202,10 +199,8 @@ impl Bvh {
             #[inline(always)]
             || {
                 for (lane, ray) in rays.iter_mut().enumerate() {
-                    if active >> lane & 1 != 0 {
-                        let slabs = Slabs::of_ray(simd, ray);
-                        self.closest_below(simd, from, stack, (base + lane, ray), slabs, leaf);
-                    }
+                    let slabs = Slabs::of_ray(simd, ray);
+                    self.closest_below(simd, Child::ROOT, stack, (first + lane, ray), slabs, leaf);
                 }
             },
         );

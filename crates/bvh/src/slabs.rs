@@ -8,7 +8,8 @@
 //!   origin, so that the test may be one multiplication and subtraction, fused or not.
 //! - A direction component of zero gives an infinite inverse, and `0 · infinity` (the origin lies in a plane
 //!   of the box) a NaN, which must not narrow the range. A component so small that its inverse overflows
-//!   would give wrong distances; its inverse is made NaN, so that this axis never narrows anything.
+//!   would give wrong distances; its inverse is made NaN, so that this axis never narrows anything. A single ray takes
+//!   a large finite inverse instead and planes moved outwards (`Slabs::parallel`), for its offsets must be finite.
 //! - Distances up to `t_max` and a hair more count, so that hits whose distance is rounded the other way
 //!   than their box's are still seen, whatever the order.
 //!

@@ -51,7 +51,7 @@ impl<'a, S: Lanes, F: Filter> Flight<'a, S, F> {
     }
 }
 
-impl<F: Filter> Query<'_, F> {
+impl<'a, F: Filter> Query<'a, F> {
     /// [`TriangleBvh::closest`] of all rays.
     #[inline(always)]
     pub(super) fn closest_in_flight<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
@@ -69,10 +69,7 @@ impl<F: Filter> Query<'_, F> {
             if let Some(hit) = flight.one.hit {
                 rays[number].t_max = hit.t;
             }
-            match rays.get(waiting) {
-                Some(ray) => flight.restart(simd, *self, waiting, ray),
-                None => _ = flights.swap_remove(at),
-            }
+            self.replace(simd, &mut flights, at, (waiting, rays.get(waiting)));
             waiting += 1;
         }
     }
@@ -88,22 +85,34 @@ impl<F: Filter> Query<'_, F> {
             let flight = &mut flights[at];
             let Some(found) = self.any_step(simd, flight) else { continue };
             occluded[flight.number] = found;
-            match rays.get(waiting) {
-                Some(ray) => flight.restart(simd, *self, waiting, ray),
-                None => _ = flights.swap_remove(at),
-            }
+            self.replace(simd, &mut flights, at, (waiting, rays.get(waiting)));
             waiting += 1;
         }
     }
 
     /// The first rays.
     #[inline(always)]
-    fn take_off<S: Lanes>(&self, simd: S, rays: &[Ray]) -> ArrayVec<Flight<'_, S, F>, IN_FLIGHT> {
+    fn take_off<S: Lanes>(&self, simd: S, rays: &[Ray]) -> ArrayVec<Flight<'a, S, F>, IN_FLIGHT> {
         let mut flights = ArrayVec::new();
         for (number, ray) in rays.iter().enumerate().take(IN_FLIGHT) {
             flights.push(Flight::new(simd, *self, number, ray));
         }
         flights
+    }
+
+    /// The next ray takes the place of one that has landed; the place goes when no ray is left.
+    #[inline(always)]
+    fn replace<S: Lanes>(
+        &self,
+        simd: S,
+        flights: &mut ArrayVec<Flight<'a, S, F>, IN_FLIGHT>,
+        at: usize,
+        (number, next): (usize, Option<&Ray>),
+    ) {
+        match next {
+            Some(ray) => flights[at].restart(simd, *self, number, ray),
+            None => _ = flights.swap_remove(at),
+        }
     }
 
     /// Whether the ray goes on.
