@@ -4,7 +4,7 @@ use crate::command::Command;
 use crate::progress::Progress;
 use crate::value::{self, FrameRange};
 use clap::{Args as Arguments, Parser};
-use juggler::tracer::render::Rect;
+use juggler::tracer::film::Rect;
 
 /// A ray tracer whose pictures are the same to the bit everywhere.
 #[derive(Debug, Parser)]

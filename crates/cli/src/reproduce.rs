@@ -4,7 +4,7 @@
 use crate::plan::{Moments, Plan, Shot};
 use juggler::Settings;
 use juggler::imaging::{Options, SampleDepth};
-use juggler::tracer::render::Rect;
+use juggler::tracer::film::Rect;
 use std::fmt::Display;
 
 /// The shortest command line that renders this picture again.

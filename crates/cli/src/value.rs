@@ -1,6 +1,6 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
-use juggler::tracer::render::Rect;
+use juggler::tracer::film::Rect;
 
 /// Largest width and height.
 const MAX_EDGE: u32 = 65_536;

@@ -4,8 +4,8 @@ use crate::Error;
 use crate::kinds::{by_name, check_name};
 use juggler_scene::Scene;
 use juggler_scene::description::CameraName;
+use juggler_tracer::film::Rect;
 use juggler_tracer::integrator::AnyIntegrator;
-use juggler_tracer::render::Rect;
 
 /// Wishes that come before what the scene file says. What is `None` stays as the scene has it.
 #[derive(Clone, Debug, Default, PartialEq)]

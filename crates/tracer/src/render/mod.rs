@@ -4,11 +4,10 @@
 //! of samples give a [`Tile`], on any thread or machine.
 
 use crate::camera::Projection;
-use crate::film::{Filter, PixelSum};
+use crate::film::{Filter, Rect, Sum, Tile};
 use crate::integrator::Integrator;
 use crate::sampler::Pattern;
 use crate::world::World;
-use juggler_math::Rgb;
 use std::ops::Range;
 
 mod control;
@@ -22,42 +21,23 @@ mod tests;
 pub use control::{Control, Rays};
 pub use schedule::{Scheduler, Stopped, band_bytes, render};
 
-/// A rectangle of pixels; x to the right, y down, from the picture's top left.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rect {
-    /// First column.
-    pub x: u32,
-    /// First row.
-    pub y: u32,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-}
-
-impl Rect {
-    /// How many pixels.
-    pub fn area(&self) -> u64 {
-        u64::from(self.width) * u64::from(self.height)
-    }
-}
-
 /// What a thread, a pass or a machine is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Work {
     /// Which pixels.
     pub pixels: Rect,
-    /// Which samples of each; the start is a multiple of [`crate::film::BLOCK`].
+    /// Which samples of each.
     pub samples: Range<u32>,
+    /// Where the first sample is in the middle of a block of [`BLOCK`](crate::film::BLOCK): for each pixel, the sum of
+    /// the block's samples before it. Else nothing.
+    pub open: Vec<Sum>,
 }
 
-/// The result of one [`Work`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tile {
-    /// Which pixels.
-    pub pixels: Rect,
-    /// Their sums, row by row.
-    pub sums: Vec<PixelSum>,
+impl Work {
+    /// The first `samples` samples.
+    pub fn first(pixels: Rect, samples: u32) -> Self {
+        Self { pixels, samples: 0..samples, open: Vec::new() }
+    }
 }
 
 /// A picture to make: everything that decides its pixels.
@@ -79,14 +59,9 @@ pub struct Job<'w> {
 }
 
 impl Job<'_> {
-    /// Renders. Pure: any machine, any order, the same bits. When `control` is cancelled, what is left
-    /// counts as black.
-    pub fn render(&self, work: &Work, control: &Control) -> Tile {
+    /// Renders. Pure: any machine, any order, the same bits. The tile holds the work's samples, and the begun block
+    /// before them. An error when `control` is cancelled.
+    pub fn render(&self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
         wavefront::Engine::new(self).render(work, control)
-    }
-
-    /// The finished pixels of a tile that holds all samples.
-    pub fn finish(&self, tile: &Tile) -> Vec<Rgb> {
-        tile.sums.iter().map(|sum| sum.mean(self.samples)).collect()
     }
 }

@@ -1,7 +1,8 @@
 //! Who renders which pixels when. Nothing here can change a bit of the picture.
 
 use super::wavefront::Engine;
-use super::{Control, Job, Rect, Tile, Work};
+use super::{Control, Job, Work};
+use crate::film::{Rect, Tile};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -48,8 +49,9 @@ pub fn render<E: From<Stopped>>(
         let draw = |pixels: Rect| {
             let recycled = lock(&engines).pop();
             let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
-            let tile = engine.render(&Work { pixels, samples: 0..job.samples }, control);
-            copy(job, &tile, &band, &mut lock(&film));
+            if let Ok(tile) = engine.render(&Work::first(pixels, job.samples), control) {
+                copy(&tile, &band, &mut lock(&film));
+            }
             lock(&engines).push(engine);
         };
         match scheduler {
@@ -75,12 +77,13 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-fn copy(job: &Job, tile: &Tile, band: &Rect, film: &mut [Rgb]) {
-    let pixels = job.finish(tile);
-    let width = tile.pixels.width as usize;
-    for (row, line) in pixels.chunks_exact(width).enumerate() {
-        let start = (tile.pixels.y - band.y) as usize + row;
-        let start = start * band.width as usize + (tile.pixels.x - band.x) as usize;
+/// Copies a tile's finished pixels to their places in a band of rows.
+pub fn copy(tile: &Tile, band: &Rect, film: &mut [Rgb]) {
+    let (pixels, place) = (tile.means(), tile.pixels());
+    let width = place.width as usize;
+    for (row, line) in pixels.chunks_exact(width.max(1)).enumerate() {
+        let start = (place.y - band.y) as usize + row;
+        let start = start * band.width as usize + (place.x - band.x) as usize;
         film[start..start + width].copy_from_slice(line);
     }
 }

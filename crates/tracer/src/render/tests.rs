@@ -12,7 +12,7 @@ use crate::sampler::{Pattern, Sobol, Spread};
 use crate::shape::AnyShape;
 use crate::texture::TextureTable;
 use crate::world::Object;
-use juggler_math::{Transform, UVec2, Vec3};
+use juggler_math::{Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
 fn read<T: DeserializeOwned>(json: &str) -> T {
@@ -47,7 +47,7 @@ fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> Projection {
 fn pixels(world: &World, camera: &Projection, integrator: &AnyIntegrator, size: UVec2, samples: u32) -> Vec<Rgb> {
     let job = job(world, camera, integrator, samples);
     let pixels = Rect { x: 0, y: 0, width: size.x, height: size.y };
-    job.finish(&job.render(&Work { pixels, samples: 0..samples }, &Control::default()))
+    job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }
 
 fn job<'w>(world: &'w World, camera: &'w Projection, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
@@ -92,7 +92,7 @@ fn tiles_cannot_be_seen() {
     let job = job(&world, &camera, &integrator, samples);
     for (x, y) in [(0, 0), (3, 5), (5, 4), (8, 4), (11, 7), (6, 6)] {
         let pixels = Rect { x, y, width: 1, height: 1 };
-        let alone = job.finish(&job.render(&Work { pixels, samples: 0..samples }, &Control::default()));
+        let alone = job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means();
         assert_eq!(alone[0], whole[(y * size.x + x) as usize], "pixel {x}, {y}");
     }
     assert!(whole.iter().all(|pixel| pixel.is_finite() && pixel.luminance() > 0.0));

@@ -7,8 +7,8 @@
 //! own tree of rays alone. The same cuts bound the memory.
 
 use super::expose::expose;
-use super::{Control, Job, Rays, Tile, Work};
-use crate::film::PixelSum;
+use super::{Control, Job, Rays, Stopped, Work};
+use crate::film::{Accumulator, Run, Tile, runs};
 use crate::integrator::{Emit, Harvest, Queue};
 use crate::world::WorldHit;
 use juggler_math::Rgb;
@@ -48,21 +48,24 @@ impl<'j> Engine<'j> {
     }
 
     /// Renders one piece of work.
-    pub fn render(&mut self, work: &Work, control: &Control) -> Tile {
-        let mut sums = vec![PixelSum::default(); work.pixels.area() as usize];
+    pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
+        let mut film = Exposed::new(work);
         let samples = u64::from(work.samples.end.saturating_sub(work.samples.start));
         let end = work.pixels.area() * samples;
         let mut first = 0;
-        while first < end && !control.is_cancelled() {
+        while first < end {
+            if control.is_cancelled() {
+                return Err(Stopped);
+            }
             let slots = first..end.min(first + PASS);
             let count = slots.end - slots.start;
             self.pass(work, samples, slots.clone());
-            self.develop(work, samples, slots, &mut sums);
+            self.rays.not_finite += film.add(samples, slots, &self.harvest.radiance);
             self.rays.camera += count;
             control.add(count, &std::mem::take(&mut self.rays));
             first += count;
         }
-        Tile { pixels: work.pixels, sums }
+        Ok(film.tile())
     }
 
     /// Traces the samples `slots` to their ends.
@@ -172,18 +175,52 @@ impl<'j> Engine<'j> {
         next.clear();
         self.spare.push(next);
     }
+}
 
-    /// Adds the finished samples to their pixels.
-    fn develop(&mut self, work: &Work, samples: u64, slots: Range<u64>, sums: &mut [PixelSum]) {
-        let mut rest = self.harvest.radiance.as_slice();
-        let mut at = slots.start;
-        while !rest.is_empty() {
-            let (pixel, sample) = (at / samples, at % samples);
-            let (now, later) = rest.split_at(((samples - sample) as usize).min(rest.len()));
-            self.rays.not_finite += sums[pixel as usize].add(work.samples.start + sample as u32, now);
+/// The film under one piece of work: the samples of a pixel come one after the other, and pixel after pixel.
+struct Exposed<'w> {
+    work: &'w Work,
+    runs: Vec<Run>,
+    /// Of the pixel whose samples come now.
+    pixel: Accumulator,
+}
+
+impl<'w> Exposed<'w> {
+    fn new(work: &'w Work) -> Self {
+        let area = work.pixels.area() as usize;
+        let run = |samples| Run { samples, sums: Vec::with_capacity(area) };
+        let runs = runs(work.samples.clone()).into_iter().map(run).collect();
+        Self { work, runs, pixel: Accumulator::default() }
+    }
+
+    /// Adds the finished samples `slots` to their pixels. Returns how many were no finite numbers.
+    fn add(&mut self, samples: u64, slots: Range<u64>, mut radiance: &[Rgb]) -> u64 {
+        let (mut at, mut lost) = (slots.start, 0);
+        while !radiance.is_empty() {
+            let sample = at % samples;
+            if sample == 0 {
+                let open = self.work.open.get((at / samples) as usize);
+                self.pixel.begin(self.work.samples.start, open);
+            }
+            let (now, later) = radiance.split_at(((samples - sample) as usize).min(radiance.len()));
+            lost += self.pixel.add(now);
             at += now.len() as u64;
-            rest = later;
+            radiance = later;
+            if at.is_multiple_of(samples) {
+                self.runs.iter_mut().zip(self.pixel.sums()).for_each(|(run, sum)| run.sums.push(sum));
+            }
         }
+        lost
+    }
+
+    fn tile(self) -> Tile {
+        let mut tile = Tile::new(self.work.pixels);
+        for run in self.runs {
+            // Runs of one range: none overlaps, all are whole.
+            let added = tile.add(run);
+            debug_assert_eq!(added, Ok(()));
+        }
+        tile
     }
 }
 

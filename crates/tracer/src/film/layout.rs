@@ -1,0 +1,84 @@
+//! How a picture is cut into tiles.
+
+/// Edge of a tile in pixels.
+pub const TILE: u32 = 16;
+
+/// A rectangle of pixels; x to the right, y down, from the picture's top left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rect {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Rect {
+    /// How many pixels.
+    pub fn area(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// What it shares with another, of no area when nothing.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let (x, y) = (self.x.max(other.x), self.y.max(other.y));
+        let end = |a: u32, b: u32, c: u32, d: u32| a.saturating_add(b).min(c.saturating_add(d));
+        let width = end(self.x, self.width, other.x, other.width).saturating_sub(x);
+        let height = end(self.y, self.height, other.y, other.height).saturating_sub(y);
+        Self { x, y, width, height }
+    }
+}
+
+/// The tiles of a region: the cells of a grid from the picture's top left, [`TILE`] pixels wide and high, as far as
+/// they lie in the region. Numbered row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    region: Rect,
+}
+
+impl Layout {
+    /// Of this region.
+    pub fn new(region: Rect) -> Self {
+        Self { region }
+    }
+
+    /// All pixels.
+    pub fn region(&self) -> Rect {
+        self.region
+    }
+
+    fn cells(start: u32, length: u32) -> u32 {
+        if length == 0 { 0 } else { (start.saturating_add(length) - 1) / TILE - start / TILE + 1 }
+    }
+
+    /// Tiles side by side.
+    pub fn columns(&self) -> u32 {
+        Self::cells(self.region.x, self.region.width)
+    }
+
+    /// Rows of tiles.
+    pub fn rows(&self) -> u32 {
+        Self::cells(self.region.y, self.region.height)
+    }
+
+    /// How many tiles.
+    pub fn tiles(&self) -> u64 {
+        u64::from(self.columns()) * u64::from(self.rows())
+    }
+
+    /// The pixels of tile `number`; `None` beyond the last.
+    pub fn tile(&self, number: u64) -> Option<Rect> {
+        if number >= self.tiles() {
+            return None;
+        }
+        let (column, row) = (number % u64::from(self.columns()), number / u64::from(self.columns()));
+        let (column, row) = (u32::try_from(column).ok()?, u32::try_from(row).ok()?);
+        let cell = |start: u32, place: u32| (start / TILE).checked_add(place)?.checked_mul(TILE);
+        let (x, y) = (cell(self.region.x, column)?, cell(self.region.y, row)?);
+        Some(self.region.intersection(&Rect { x, y, width: TILE, height: TILE }))
+    }
+}

@@ -1,0 +1,146 @@
+//! Sums over blocks of samples, joined along a fixed binary tree.
+
+use super::BLOCK;
+use arrayvec::ArrayVec;
+use juggler_math::Rgb;
+use std::ops::Range;
+
+/// Most runs that the samples of a pixel fall into: one for each bit of a number of blocks on the way up, one on
+/// the way down, and an open block.
+pub(super) const MAX_RUNS: usize = 64;
+
+/// What is known of one pixel's samples of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sum {
+    /// The sum of the samples, linear RGB.
+    pub total: [f64; 3],
+    /// How much the sums of the run's blocks differ: the sum of squared deviations from their mean (Chan, Golub,
+    /// LeVeque 1979, whose joining does not cancel).
+    pub spread: [f32; 3],
+}
+
+impl Sum {
+    fn of_block(block: Rgb) -> Self {
+        Self { total: block.to_array().map(f64::from), spread: [0.0; 3] }
+    }
+
+    /// With the run that follows; they have `blocks` blocks each.
+    #[must_use]
+    pub fn joined(&self, next: &Self, blocks: [u32; 2]) -> Self {
+        let [a, b] = blocks.map(f64::from);
+        let mut sum = Self::default();
+        for i in 0..3 {
+            sum.total[i] = self.total[i] + next.total[i];
+            let apart = next.total[i] / b.max(1.0) - self.total[i] / a.max(1.0);
+            let between = apart * apart * (a * b / (a + b).max(1.0));
+            sum.spread[i] = self.spread[i] + next.spread[i] + between as f32;
+        }
+        sum
+    }
+}
+
+/// The blocks of a run are as many as a power of two, and their number divides the number of the first: the runs
+/// are the nodes of a binary tree over all blocks.
+pub(super) fn level(samples: &Range<u32>) -> Option<u32> {
+    let blocks = (samples.end.checked_sub(samples.start)?) / BLOCK;
+    let whole = samples.start.is_multiple_of(BLOCK) && samples.end.is_multiple_of(BLOCK);
+    let aligned = blocks.is_power_of_two() && (samples.start / BLOCK).is_multiple_of(blocks);
+    (whole && aligned).then(|| blocks.trailing_zeros())
+}
+
+/// Whether the samples are the first of one block, but not all of it.
+pub(super) fn is_open(samples: &Range<u32>) -> bool {
+    samples.start.is_multiple_of(BLOCK) && samples.end > samples.start && samples.end - samples.start < BLOCK
+}
+
+/// Takes in the samples of one pixel in order and joins their blocks as soon as two are neighbours in the tree.
+#[derive(Clone, Debug, Default)]
+pub struct Accumulator {
+    next: u32,
+    block: Rgb,
+    runs: ArrayVec<(u32, Sum), MAX_RUNS>,
+}
+
+impl Accumulator {
+    /// Forgets everything. The next sample is `first`: either a block begins with it, or `open` holds the sum of the
+    /// samples of its block that are there already.
+    pub fn begin(&mut self, first: u32, open: Option<&Sum>) {
+        // The sum of an open block was a sum of `f32`s in that order: nothing is lost on the way back.
+        self.block = open.map_or(Rgb::BLACK, |sum| {
+            let [r, g, b] = sum.total.map(|total| total as f32);
+            Rgb::new(r, g, b)
+        });
+        self.next = first;
+        self.runs.clear();
+    }
+
+    /// Adds the next samples. One that is no finite number counts as black. Returns how many were not.
+    #[inline]
+    pub fn add(&mut self, mut samples: &[Rgb]) -> u64 {
+        let mut lost = 0;
+        while !samples.is_empty() {
+            let room = (BLOCK - self.next % BLOCK) as usize;
+            let (now, rest) = samples.split_at(room.min(samples.len()));
+            lost += self.add_to_block(now);
+            self.next = self.next.wrapping_add(now.len() as u32);
+            if now.len() == room {
+                self.close();
+            }
+            samples = rest;
+        }
+        lost
+    }
+
+    #[inline]
+    fn add_to_block(&mut self, samples: &[Rgb]) -> u64 {
+        let sum = samples.iter().fold(self.block, |sum, sample| sum + *sample);
+        if sum.is_finite() {
+            self.block = sum;
+            return 0;
+        }
+        // Rarely: one of them spoils the sum.
+        let (finite, lost): (Vec<Rgb>, Vec<Rgb>) = samples.iter().partition(|sample| sample.is_finite());
+        self.block = finite.iter().fold(self.block, |sum, sample| sum + *sample);
+        lost.len() as u64
+    }
+
+    fn close(&mut self) {
+        let mut sum = Sum::of_block(std::mem::take(&mut self.block));
+        let mut level = 0;
+        let mut number = self.next.wrapping_sub(1) / BLOCK;
+        while number & 1 == 1
+            && let Some((other, left)) = self.runs.last()
+            && *other == level
+        {
+            sum = left.joined(&sum, [1 << level; 2]);
+            self.runs.pop();
+            level += 1;
+            number >>= 1;
+        }
+        // At most one a level on the way up and one on the way down: there is room.
+        let _ = self.runs.try_push((level, sum));
+    }
+
+    /// The runs' sums in order, the open block's last.
+    pub fn sums(&self) -> impl Iterator<Item = Sum> {
+        let open = (!self.next.is_multiple_of(BLOCK)).then(|| Sum::of_block(self.block));
+        self.runs.iter().map(|(_, sum)| *sum).chain(open)
+    }
+}
+
+/// The runs that the samples fall into, in order.
+pub fn runs(samples: Range<u32>) -> Vec<Range<u32>> {
+    let mut runs = Vec::new();
+    let mut start = samples.start - samples.start % BLOCK;
+    while start < samples.end {
+        let blocks = (samples.end - start) / BLOCK;
+        let aligned = if start == 0 { u32::MAX } else { 1 << (start / BLOCK).trailing_zeros() };
+        let length = match blocks {
+            0 => samples.end - start,
+            _ => aligned.min(1 << blocks.ilog2()) * BLOCK,
+        };
+        runs.push(start..start + length);
+        start += length;
+    }
+    runs
+}

@@ -1,0 +1,153 @@
+//! Sums against sums by hand, and runs in every order.
+
+use super::*;
+use juggler_math::{Rgb, hash};
+use std::ops::Range;
+
+const PIXELS: Rect = Rect { x: 0, y: 0, width: 2, height: 1 };
+
+/// Samples of very different sizes, so that the order of additions shows.
+fn sample(pixel: u32, index: u32) -> Rgb {
+    let unit = |salt: u32| hash::unit_f32(hash::combine(hash::combine(pixel, index), salt));
+    let size = 10f32.powi((unit(9) * 16.0) as i32 - 8);
+    Rgb::new(unit(1), unit(2), unit(3)) * size
+}
+
+/// The tile of these samples, as the engine makes it.
+fn tile(samples: Range<u32>, open: Option<&Run>) -> Tile {
+    let mut tile = Tile::new(PIXELS);
+    let mut runs: Vec<Run> = runs(samples.clone()).into_iter().map(|samples| Run { samples, sums: vec![] }).collect();
+    for pixel in 0..PIXELS.area() as u32 {
+        let mut accumulator = Accumulator::default();
+        accumulator.begin(samples.start, open.map(|run| &run.sums[pixel as usize]));
+        let radiance: Vec<Rgb> = samples.clone().map(|index| sample(pixel, index)).collect();
+        assert_eq!(accumulator.add(&radiance), 0);
+        let sums: Vec<Sum> = accumulator.sums().collect();
+        assert_eq!(sums.len(), runs.len(), "{samples:?}");
+        runs.iter_mut().zip(sums).for_each(|(run, sum)| run.sums.push(sum));
+    }
+    runs.into_iter().for_each(|run| tile.add(run).unwrap());
+    tile
+}
+
+fn block(pixel: u32, number: u32, end: u32) -> [f64; 3] {
+    let samples = (number * BLOCK)..end.min((number + 1) * BLOCK);
+    samples.fold(Rgb::BLACK, |sum, index| sum + sample(pixel, index)).to_array().map(f64::from)
+}
+
+/// The sum of the blocks in a range whose length is a power of two, by halves.
+fn tree(pixel: u32, blocks: Range<u32>) -> [f64; 3] {
+    if blocks.len() == 1 {
+        return block(pixel, blocks.start, u32::MAX);
+    }
+    let half = blocks.start + blocks.len() as u32 / 2;
+    let (a, b) = (tree(pixel, blocks.start..half), tree(pixel, half..blocks.end));
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+#[test]
+fn a_mean_is_that_of_blocks_joined_along_the_tree() {
+    // 11 blocks and 5 samples: runs of 8, 2 and 1 blocks, and an open one.
+    let end = 11 * BLOCK + 5;
+    let tile = tile(0..end, None);
+    assert_eq!(tile.runs().iter().map(|run| run.samples.len() as u32).collect::<Vec<_>>(), [128, 32, 16, 5]);
+    for pixel in 0..2 {
+        let parts = [tree(pixel, 0..8), tree(pixel, 8..10), tree(pixel, 10..11), block(pixel, 11, end)];
+        let total = parts.iter().fold([0.0; 3], |sum: [f64; 3], part| std::array::from_fn(|i| sum[i] + part[i]));
+        let mean = total.map(|total| (total / f64::from(end)) as f32);
+        assert_eq!(tile.means()[pixel as usize].to_array(), mean);
+    }
+}
+
+#[test]
+fn parts_come_in_any_order_and_any_cut() {
+    let whole = tile(0..40 * BLOCK, None);
+    for seed in 0..40u32 {
+        let mut cuts: Vec<u32> = (0..6).map(|i| hash::combine(seed, i) % 41).chain([0, 40]).collect();
+        cuts.sort_unstable();
+        let mut parts: Vec<Tile> = cuts
+            .windows(2)
+            .filter(|cut| cut[0] < cut[1])
+            .map(|cut| tile(cut[0] * BLOCK..cut[1] * BLOCK, None))
+            .collect();
+        parts.sort_by_key(|part| hash::combine(seed, part.runs()[0].samples.start));
+        let merged = parts.iter().fold(Tile::new(PIXELS), |mut sum, part| {
+            sum.merge(part.clone()).unwrap();
+            sum
+        });
+        assert_eq!(merged, whole, "cuts {cuts:?}");
+        // What is there is refused.
+        let mut doubled = merged.clone();
+        assert!(matches!(doubled.merge(parts[0].clone()), Err(TileError::Doubled(_))));
+        assert_eq!(doubled, whole, "and changes nothing");
+    }
+}
+
+#[test]
+fn a_begun_block_is_gone_on_with() {
+    for first in 1..70 {
+        let mut begun = tile(0..first, None);
+        let open = begun.take_open();
+        assert_eq!(open.is_some(), first % BLOCK != 0);
+        begun.merge(tile(first..100, open.as_ref())).unwrap();
+        assert_eq!(begun, tile(0..100, None), "from {first} on");
+        assert!(begun.is_gapless() && begun.samples() == 100);
+    }
+}
+
+#[test]
+fn gaps_are_seen() {
+    let mut some = tile(0..16, None);
+    some.merge(tile(48..64, None)).unwrap();
+    assert!(!some.is_gapless() && some.samples() == 16);
+}
+
+#[test]
+fn what_is_no_run_is_refused() {
+    let run = |samples: Range<u32>| Run { samples, sums: vec![Sum::default(); 2] };
+    let mut tile = Tile::new(PIXELS);
+    for uneven in [3..5, 8..24, 16..64, 32..96, 0..48, 5..5, 16..16] {
+        assert_eq!(tile.add(run(uneven.clone())), Err(TileError::Uneven(uneven)));
+    }
+    assert_eq!(tile.add(Run { samples: 0..16, sums: vec![Sum::default()] }), Err(TileError::Pixels));
+    tile.add(run(32..37)).unwrap();
+    assert_eq!(tile.add(run(32..48)), Err(TileError::Doubled(32..48)), "a block that was begun");
+    assert_eq!(tile.add(run(0..64)), Err(TileError::Doubled(0..64)));
+}
+
+#[test]
+fn statistics_are_those_of_the_blocks() {
+    let blocks = 23;
+    let tile = tile(0..blocks * BLOCK + 3, None);
+    let means: Vec<f64> = (0..blocks).map(|number| block(1, number, u32::MAX)[2] / 16.0).collect();
+    let mean = means.iter().sum::<f64>() / f64::from(blocks);
+    let squares = means.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+    let variance = squares / f64::from(blocks * (blocks - 1));
+    let found = tile.statistics(1);
+    assert!(found.blocks == blocks && (found.mean[2] / mean - 1.0).abs() < 1e-12, "{found:?}");
+    assert!((found.variance[2] / variance - 1.0).abs() < 1e-5, "{} for {variance}", found.variance[2]);
+    assert_eq!(Tile::new(PIXELS).statistics(0), Statistics::default());
+}
+
+#[test]
+fn samples_that_are_no_numbers_count_as_black_and_are_counted() {
+    let (nan, infinite) = (Rgb::new(0.0, f32::NAN, 0.0), Rgb::new(f32::INFINITY, 0.0, 0.0));
+    let mut accumulator = Accumulator::default();
+    assert_eq!(accumulator.add(&[Rgb::WHITE, nan, Rgb::WHITE, infinite]), 2);
+    assert_eq!(accumulator.sums().next().unwrap().total, [2.0; 3]);
+}
+
+#[test]
+fn tiles_cover_a_region_once() {
+    for (x, y, width, height) in [(0, 0, 64, 64), (0, 0, 1, 1), (5, 17, 30, 16), (15, 15, 2, 2), (3, 3, 0, 9)] {
+        let region = Rect { x, y, width, height };
+        let layout = Layout::new(region);
+        let tiles: Vec<Rect> = (0..layout.tiles()).map(|number| layout.tile(number).unwrap()).collect();
+        assert_eq!(tiles.iter().map(Rect::area).sum::<u64>(), region.area());
+        assert!(tiles.iter().all(|tile| tile.intersection(&region) == *tile && tile.area() > 0));
+        assert!(tiles.iter().all(|tile| (tile.x % TILE == 0 || tile.x == x) && tile.width <= TILE));
+        assert_eq!(layout.tile(layout.tiles()), None);
+    }
+    let huge = Layout::new(Rect { x: u32::MAX - 5, y: 0, width: u32::MAX, height: u32::MAX });
+    assert!(huge.tile(huge.tiles() - 1).is_some() || huge.tiles() > 0, "no overflow");
+}

@@ -1,0 +1,175 @@
+//! A rectangle of pixels with the samples that are there so far.
+
+use super::sum::{Sum, is_open, level};
+use super::{BLOCK, Rect};
+use juggler_math::Rgb;
+use std::ops::Range;
+
+/// Consecutive samples of every pixel of a tile: a node of the tree over all blocks, or the beginning of a block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Which samples.
+    pub samples: Range<u32>,
+    /// Their sums, pixel by pixel, row by row.
+    pub sums: Vec<Sum>,
+}
+
+/// A rectangle of pixels with the samples that are there so far, all pixels alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    pixels: Rect,
+    /// In order, none overlapping, neighbours in the tree joined.
+    runs: Vec<Run>,
+}
+
+/// Why samples cannot be added to a tile.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TileError {
+    /// Some of them are there already.
+    #[error("the samples {} to {} are there twice", .0.start, .0.end)]
+    Doubled(Range<u32>),
+    /// They are not cut at blocks of samples as they must be.
+    #[error("the samples {} to {} are no whole run of blocks", .0.start, .0.end)]
+    Uneven(Range<u32>),
+    /// They are of other pixels.
+    #[error("the samples are of other pixels")]
+    Pixels,
+}
+
+impl Tile {
+    /// Without samples.
+    pub fn new(pixels: Rect) -> Self {
+        Self { pixels, runs: Vec::new() }
+    }
+
+    /// Which pixels.
+    pub fn pixels(&self) -> Rect {
+        self.pixels
+    }
+
+    /// The samples that are there, in order.
+    pub fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
+    /// How many samples from the first on are there without a gap.
+    pub fn samples(&self) -> u32 {
+        self.runs.iter().fold(0, |end, run| if run.samples.start == end { run.samples.end } else { end })
+    }
+
+    /// Whether there is no gap from the first sample to the last that is there.
+    pub fn is_gapless(&self) -> bool {
+        self.samples() == self.runs.last().map_or(0, |run| run.samples.end)
+    }
+
+    /// Takes the block out that was begun last, to go on with it.
+    pub fn take_open(&mut self) -> Option<Run> {
+        self.runs.pop_if(|run| is_open(&run.samples))
+    }
+
+    /// Adds a run, whatever the order in which runs come: the result is the same to the bit.
+    pub fn add(&mut self, run: Run) -> Result<(), TileError> {
+        let Range { start, end } = run.samples;
+        if run.sums.len() as u64 != self.pixels.area() {
+            return Err(TileError::Pixels);
+        }
+        if level(&run.samples).is_none() && !is_open(&run.samples) {
+            return Err(TileError::Uneven(run.samples));
+        }
+        let place = self.runs.partition_point(|other| other.samples.start < start);
+        let doubled = |other: &Run| other.samples.start < end && other.samples.end > start;
+        let neighbours = [place.checked_sub(1), Some(place)];
+        if neighbours.into_iter().flatten().filter_map(|at| self.runs.get(at)).any(doubled) {
+            return Err(TileError::Doubled(run.samples));
+        }
+        self.runs.insert(place, run);
+        self.join(place);
+        Ok(())
+    }
+
+    /// Adds everything that another tile of the same pixels holds.
+    pub fn merge(&mut self, other: Self) -> Result<(), TileError> {
+        if other.pixels != self.pixels {
+            return Err(TileError::Pixels);
+        }
+        other.runs.into_iter().try_for_each(|run| self.add(run))
+    }
+
+    /// Joins the run at `place` with its neighbour in the tree, and the result with its own.
+    fn join(&mut self, mut place: usize) {
+        while let Some(run) = self.runs.get(place)
+            && let Some(level) = level(&run.samples)
+        {
+            let is_right = (run.samples.start / BLOCK) >> level & 1 == 1;
+            let left = if is_right { place.wrapping_sub(1) } else { place };
+            let Some([a, b]) = self.runs.get_mut(left..).and_then(<[Run]>::first_chunk_mut) else { return };
+            if a.samples.end != b.samples.start || a.samples.len() != b.samples.len() {
+                return;
+            }
+            for (sum, next) in a.sums.iter_mut().zip(&b.sums) {
+                *sum = sum.joined(next, [1 << level; 2]);
+            }
+            a.samples.end = b.samples.end;
+            self.runs.remove(left + 1);
+            place = left;
+        }
+    }
+
+    /// The finished pixels, row by row: the means of the samples that are there.
+    pub fn means(&self) -> Vec<Rgb> {
+        let count = f64::from(self.runs.iter().map(|run| run.samples.end - run.samples.start).sum::<u32>().max(1));
+        let mean = |total: [f64; 3]| {
+            let [r, g, b] = total.map(|total| (total / count) as f32);
+            Rgb::new(r, g, b)
+        };
+        (0..self.pixels.area() as usize).map(|pixel| mean(self.total(pixel))).collect()
+    }
+
+    fn total(&self, pixel: usize) -> [f64; 3] {
+        self.runs.iter().filter_map(|run| run.sums.get(pixel)).fold([0.0; 3], |total, sum| {
+            let mut total = total;
+            for (total, more) in total.iter_mut().zip(sum.total) {
+                *total += more;
+            }
+            total
+        })
+    }
+
+    /// Mean and its variance, as the blocks of samples give it, of one pixel; no variance of fewer than two blocks.
+    /// Blocks that are not whole are left out.
+    pub fn statistics(&self, pixel: usize) -> Statistics {
+        let mut sum = Sum::default();
+        let mut blocks = 0;
+        for run in self.runs.iter().filter(|run| !is_open(&run.samples)) {
+            let more = (run.samples.end - run.samples.start) / BLOCK;
+            if let Some(next) = run.sums.get(pixel) {
+                sum = if blocks == 0 { *next } else { sum.joined(next, [blocks, more]) };
+                blocks += more;
+            }
+        }
+        Statistics::of(&sum, blocks)
+    }
+}
+
+/// Mean of a pixel's samples, and how far off it may be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Linear RGB.
+    pub mean: [f64; 3],
+    /// Variance of the mean.
+    pub variance: [f64; 3],
+    /// Blocks of samples that both were drawn from.
+    pub blocks: u32,
+}
+
+impl Statistics {
+    fn of(sum: &Sum, blocks: u32) -> Self {
+        let (count, size) = (f64::from(blocks.max(1)), f64::from(BLOCK));
+        let freedom = count * f64::from(blocks.saturating_sub(1).max(1));
+        Self {
+            mean: sum.total.map(|total| total / (count * size)),
+            variance: sum.spread.map(|spread| f64::from(spread) / (freedom * size * size)),
+            blocks,
+        }
+    }
+}
