@@ -5,6 +5,7 @@
 //! along a fixed binary tree over their numbers. Whoever renders which block, on which thread or machine, the
 //! additions are the same ones, so the bits are too.
 
+mod canvas;
 mod digest;
 mod filter;
 mod layout;
@@ -13,6 +14,7 @@ mod sum;
 mod tests;
 mod tile;
 
+pub use canvas::Film;
 pub use digest::{Digest, Summary};
 pub use filter::{AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent};
 pub use layout::{Layout, Rect, TILE};

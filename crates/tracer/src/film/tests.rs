@@ -87,7 +87,7 @@ fn parts_come_in_any_order_and_any_cut() {
 fn a_begun_block_is_gone_on_with() {
     for first in 1..70 {
         let mut begun = tile(0..first, None);
-        let open = begun.take_open();
+        let open = begun.take_open(first);
         assert_eq!(open.is_some(), first % BLOCK != 0);
         begun.merge(tile(first..100, open.as_ref())).unwrap();
         assert_eq!(begun, tile(0..100, None), "from {first} on");

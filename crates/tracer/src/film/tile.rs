@@ -5,6 +5,9 @@ use super::{BLOCK, Rect};
 use juggler_math::Rgb;
 use std::ops::Range;
 
+/// What keeps the relative error of dark pixels finite: below 0.1 it goes over into an absolute one.
+const DARK: f64 = 0.01;
+
 /// Consecutive samples of every pixel of a tile: a node of the tree over all blocks, or the beginning of a block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
@@ -62,9 +65,32 @@ impl Tile {
         self.samples() == self.runs.last().map_or(0, |run| run.samples.end)
     }
 
-    /// Takes the block out that was begun last, to go on with it.
-    pub fn take_open(&mut self) -> Option<Run> {
-        self.runs.pop_if(|run| is_open(&run.samples))
+    /// Whether no samples are there.
+    pub fn is_empty(&self) -> bool {
+        self.runs.is_empty()
+    }
+
+    /// How many samples are there.
+    pub fn count(&self) -> u32 {
+        self.runs.iter().map(|run| run.samples.end - run.samples.start).sum()
+    }
+
+    /// The first of the samples `among` that are missing, as far as they follow each other.
+    pub fn missing(&self, among: Range<u32>) -> Option<Range<u32>> {
+        let mut start = among.start;
+        for run in &self.runs {
+            if run.samples.start > start {
+                return (start < among.end).then(|| start..among.end.min(run.samples.start));
+            }
+            start = start.max(run.samples.end);
+        }
+        (start < among.end).then_some(start..among.end)
+    }
+
+    /// Takes the begun block out whose samples end before `end`, to go on with it.
+    pub fn take_open(&mut self, end: u32) -> Option<Run> {
+        let place = self.runs.iter().position(|run| run.samples.end == end && is_open(&run.samples))?;
+        Some(self.runs.remove(place))
     }
 
     /// Adds a run, whatever the order in which runs come: the result is the same to the bit.
@@ -117,7 +143,7 @@ impl Tile {
 
     /// The finished pixels, row by row: the means of the samples that are there.
     pub fn means(&self) -> Vec<Rgb> {
-        let count = f64::from(self.runs.iter().map(|run| run.samples.end - run.samples.start).sum::<u32>().max(1));
+        let count = f64::from(self.count().max(1));
         let mean = |total: [f64; 3]| {
             let [r, g, b] = total.map(|total| (total / count) as f32);
             Rgb::new(r, g, b)
@@ -133,6 +159,23 @@ impl Tile {
             }
             total
         })
+    }
+
+    /// How far off the pixels are, as the square of the relative error's root mean square: the mean over all pixels of
+    /// the variance of the mean over its square, kept off zero by 0.01 (relMSE, Rousselle, Knaus, Zwicker 2011).
+    /// `None` of fewer than two blocks.
+    pub fn relative_variance(&self) -> Option<f64> {
+        let area = self.pixels.area() as usize;
+        let mut sum = 0.0;
+        for pixel in 0..area {
+            let Statistics { mean, variance, blocks } = self.statistics(pixel);
+            if blocks < 2 {
+                return None;
+            }
+            let gray = (mean[0] + mean[1] + mean[2]) / 3.0;
+            sum += (variance[0] + variance[1] + variance[2]) / 3.0 / (gray * gray + DARK);
+        }
+        Some(sum / area.max(1) as f64)
     }
 
     /// Mean and its variance, as the blocks of samples give it, of one pixel; no variance of fewer than two blocks.

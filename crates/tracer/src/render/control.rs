@@ -26,6 +26,7 @@ impl Rays {
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
+    finishing: AtomicBool,
     samples: AtomicU64,
     camera: AtomicU64,
     shadow: AtomicU64,
@@ -42,6 +43,16 @@ impl Control {
     /// Whether somebody asked.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Relaxed)
+    }
+
+    /// Asks for no new samples to be begun: what is begun is done, and the render ends as if that had been all.
+    pub fn finish(&self) {
+        self.finishing.store(true, Relaxed);
+    }
+
+    /// Whether somebody asked to finish, or to cancel.
+    pub fn is_finishing(&self) -> bool {
+        self.finishing.load(Relaxed) || self.is_cancelled()
     }
 
     /// Samples done so far, over all pixels.

@@ -12,6 +12,7 @@ use std::ops::Range;
 
 mod control;
 mod expose;
+mod progressive;
 mod schedule;
 mod wavefront;
 
@@ -19,6 +20,7 @@ mod wavefront;
 mod tests;
 
 pub use control::{Control, Rays};
+pub use progressive::{Stop, expose, is_finished};
 pub use schedule::{Scheduler, Stopped, band_bytes, render};
 
 /// What a thread, a pass or a machine is given.

@@ -36,7 +36,7 @@ fn world(objects: &[(&str, Vec3, &str)], lights: &[&str], background: Rgb) -> Wo
     World::new(objects, compiler.finish().unwrap(), lights, AnyBackground::Solid(Solid { color: background }))
 }
 
-fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> Projection {
+pub fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> Projection {
     let camera: Perspective = read(&format!(
         r#"{{"eye": [{}, {}, {}], "look_at": [{}, {}, {}], "vertical_fov_degrees": {fov}}}"#,
         eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z
@@ -50,7 +50,7 @@ fn pixels(world: &World, camera: &Projection, integrator: &AnyIntegrator, size: 
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }
 
-fn job<'w>(world: &'w World, camera: &'w Projection, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
+pub fn job<'w>(world: &'w World, camera: &'w Projection, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
     let (pattern, filter) = (Sobol {}.pattern(samples), BoxFilter {}.filter(samples));
     assert_eq!(pattern, Pattern::Sobol);
     Job { world, camera, integrator: &**integrator, filter, pattern, samples, seed: 1 }
@@ -64,7 +64,7 @@ fn near(a: Rgb, b: Rgb, tolerance: f32) -> bool {
 const PIXEL: UVec2 = UVec2::ONE;
 
 /// Mirrors, glossy and blurry bundles, glass, soft shadows, occlusion, and a slot that outgrows its group.
-fn busy() -> World {
+pub fn busy() -> World {
     let glossy = r#"{"phong": {"diffuse": [0.2, 0.3, 0.4], "reflection": 0.7, "ambient": 0.3, "occlusion": 1,
         "glossy": {"half_angle_degrees": 20, "rays": 24}}}"#;
     let glass = r#"{"phong": {"diffuse": 0.1, "transparency": [0.9, 0.8, 0.9], "reflection": 0.2, "ior": 1.5,

@@ -1,0 +1,93 @@
+//! A film that stays in memory while it is exposed, and can be read meanwhile.
+
+use super::tile::Tile;
+use super::{Layout, TileError};
+use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The tiles of a region, or some of them, each with the samples that it is to get.
+#[derive(Debug)]
+pub struct Film {
+    layout: Layout,
+    cells: Vec<Cell>,
+}
+
+#[derive(Debug)]
+struct Cell {
+    number: u64,
+    wanted: Range<u32>,
+    tile: Mutex<Tile>,
+}
+
+impl Film {
+    /// All tiles, for the samples `wanted`.
+    pub fn new(layout: Layout, wanted: Range<u32>) -> Self {
+        Self::of(layout, (0..layout.tiles()).map(|number| (number, wanted.clone())))
+    }
+
+    /// Some of the tiles, by number, each once, with the samples that they are to get. Numbers beyond the last
+    /// tile are left out.
+    pub fn of(layout: Layout, shares: impl IntoIterator<Item = (u64, Range<u32>)>) -> Self {
+        let cell = |(number, wanted)| Some(Cell { number, wanted, tile: Mutex::new(Tile::new(layout.tile(number)?)) });
+        let mut cells: Vec<Cell> = shares.into_iter().filter_map(cell).collect();
+        cells.sort_by_key(|cell| cell.number);
+        cells.dedup_by_key(|cell| cell.number);
+        Self { layout, cells }
+    }
+
+    /// Bytes that a whole film of a region holds, a run a tile.
+    pub fn bytes(layout: &Layout) -> u64 {
+        let pixels = layout.region().area();
+        let tiles = layout.tiles().saturating_mul((size_of::<Cell>() + size_of::<super::Run>()) as u64);
+        pixels.saturating_mul(size_of::<super::Sum>() as u64).saturating_add(tiles)
+    }
+
+    /// How the region is cut.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// How many tiles are held.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether no tile is held.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// The samples that the tile at `place` is to get.
+    pub fn wanted(&self, place: usize) -> Range<u32> {
+        self.cells.get(place).map_or(0..0, |cell| cell.wanted.clone())
+    }
+
+    /// The tile at `place`, for as long as nobody else needs it.
+    pub fn tile(&self, place: usize) -> Option<MutexGuard<'_, Tile>> {
+        // Poison only says that another thread panicked, which rayon passes on anyway.
+        self.cells.get(place).map(|cell| cell.tile.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Copies of all tiles with samples, one at a time, with their numbers.
+    pub fn tiles(&self) -> impl Iterator<Item = (u64, Tile)> {
+        let copies = (0..self.cells.len()).map(|place| (self.cells[place].number, self.tile(place)));
+        copies.filter_map(|(number, tile)| tile.map(|tile| (number, tile.clone()))).filter(|(_, tile)| !tile.is_empty())
+    }
+
+    /// Adds what another film holds of tile `number`; `false` when the tile is not held here.
+    pub fn add(&self, number: u64, tile: Tile) -> Result<bool, TileError> {
+        let Ok(place) = self.cells.binary_search_by_key(&number, |cell| cell.number) else { return Ok(false) };
+        self.tile(place).map_or(Ok(false), |mut held| held.merge(tile).map(|()| true))
+    }
+
+    /// Samples that are there, over all pixels.
+    pub fn samples(&self) -> u64 {
+        let each = |place: usize| self.tile(place).map_or(0, |tile| tile.pixels().area() * u64::from(tile.count()));
+        (0..self.cells.len()).map(each).sum()
+    }
+
+    /// How many samples each tile has, in the order of their numbers.
+    pub fn counts(&self) -> Vec<u32> {
+        (0..self.cells.len()).map(|place| self.tile(place).map_or(0, |tile| tile.count())).collect()
+    }
+}

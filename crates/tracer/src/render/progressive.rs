@@ -1,0 +1,292 @@
+//! A film exposed round by round, each tile until its rule says that it has enough. What is there already is
+//! gone on with. Nothing here can change a bit of the picture: which samples a tile gets follows from the rule and
+//! from its own samples alone.
+
+use super::wavefront::Engine;
+use super::{Control, Job, Stopped, Work};
+use crate::film::{BLOCK, Film, Run};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::ops::Range;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Fewest samples from which noise is told.
+const LEAST_FOR_NOISE: u32 = 4 * BLOCK;
+/// Most samples of a pixel in a round.
+const LONGEST_ROUND: u32 = 16 * BLOCK;
+
+/// When a tile has enough samples. In any case it gets no more than the film wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Stop {
+    /// When it has as many as the film wants.
+    #[default]
+    Samples,
+    /// When the root mean square of its pixels' relative errors is at most this level, looked at after fixed
+    /// numbers of samples: 64, 96, 128, 192, 256 and so on.
+    Noise(f32),
+}
+
+/// Exposes `film` on the threads of the current rayon pool until every tile has enough, or until
+/// [`Control::finish`]: then what is begun is done, and the rest left. When cancelled, what is begun is lost. `film` may
+/// be read meanwhile.
+pub fn expose(job: &Job, film: &Film, stop: Stop, control: &Control) -> Result<(), Stopped> {
+    let rounds = Rounds::new(film, stop);
+    rayon::broadcast(|_| {
+        let mut engine = Engine::new(job);
+        while let Some(round) = rounds.next(control) {
+            round.render(film, &mut engine, control);
+            rounds.done(&round);
+        }
+    });
+    if control.is_cancelled() { Err(Stopped) } else { Ok(()) }
+}
+
+/// Whether every tile of the film has enough.
+pub fn is_finished(film: &Film, stop: Stop) -> bool {
+    (0..film.len()).all(|place| Round::after(film, stop, place, 0).is_none())
+}
+
+/// Some samples of one tile.
+struct Round {
+    place: usize,
+    samples: Range<u32>,
+}
+
+impl Round {
+    /// The next samples of the tile at `place`, those before `from` being given to somebody already.
+    fn after(film: &Film, stop: Stop, place: usize, from: u32) -> Option<Self> {
+        let wanted = film.wanted(place);
+        let tile = film.tile(place)?;
+        let missing = tile.missing(wanted.start.max(from)..wanted.end)?;
+        if let Stop::Noise(level) = stop
+            && is_round(missing.start)
+            && missing.start >= LEAST_FOR_NOISE
+            && tile.relative_variance().is_some_and(|square| square <= f64::from(level) * f64::from(level))
+        {
+            return None;
+        }
+        let end = missing.end.min(round_after(missing.start));
+        Some(Self { place, samples: missing.start..end })
+    }
+
+    fn render(&self, film: &Film, engine: &mut Engine, control: &Control) {
+        let Some((pixels, open)) =
+            film.tile(self.place).map(|mut tile| (tile.pixels(), tile.take_open(self.samples.start)))
+        else {
+            return;
+        };
+        let sums = open.as_ref().map_or_else(Vec::new, |run| run.sums.clone());
+        let rendered = engine.render(&Work { pixels, samples: self.samples.clone(), open: sums }, control);
+        let Some(mut tile) = film.tile(self.place) else { return };
+        let added = match (rendered, open) {
+            (Ok(new), _) => tile.merge(new),
+            (Err(Stopped), Some(open)) => tile.add(open),
+            (Err(Stopped), None) => Ok(()),
+        };
+        debug_assert_eq!(added, Ok(()), "samples are given out once");
+    }
+}
+
+/// The end of the round that begins with this sample: 16, 32, 64, 96, 128, 192, 256 and so on.
+fn round_after(sample: u32) -> u32 {
+    let power = (sample.checked_ilog2()).map_or(0, |bits| 1 << bits);
+    let end = match sample {
+        0..BLOCK => BLOCK,
+        _ if sample < LEAST_FOR_NOISE => power * 2,
+        _ if sample < power + power / 2 => power + power / 2,
+        _ => power.saturating_mul(2),
+    };
+    end.min((sample / LONGEST_ROUND).saturating_add(1).saturating_mul(LONGEST_ROUND))
+}
+
+fn is_round(sample: u32) -> bool {
+    sample.checked_sub(1).is_some_and(|before| round_after(before) == sample)
+}
+
+/// The rounds that wait: those of the tiles with the fewest samples come first.
+struct Rounds<'f> {
+    film: &'f Film,
+    stop: Stop,
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+struct State {
+    /// First sample, place, end.
+    waiting: BinaryHeap<Reverse<(u32, usize, u32)>>,
+    /// Rounds that somebody is busy with.
+    begun: usize,
+}
+
+impl<'f> Rounds<'f> {
+    fn new(film: &'f Film, stop: Stop) -> Self {
+        let first = (0..film.len()).filter_map(|place| Round::after(film, stop, place, 0));
+        let waiting = first.map(|round| round.entry()).collect();
+        Self { film, stop, state: Mutex::new(State { waiting, begun: 0 }), changed: Condvar::new() }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for a round; `None` when there is none to come.
+    fn next(&self, control: &Control) -> Option<Round> {
+        let mut state = self.lock();
+        loop {
+            if control.is_finishing() {
+                return None;
+            }
+            if let Some(Reverse((start, place, end))) = state.waiting.pop() {
+                state.begun += 1;
+                // The rounds of a tile follow from each other's samples only where noise is looked at.
+                if self.stop == Stop::Samples
+                    && let Some(next) = Round::after(self.film, self.stop, place, end)
+                {
+                    state.waiting.push(next.entry());
+                }
+                return Some(Round { place, samples: start..end });
+            }
+            if state.begun == 0 {
+                return None;
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn done(&self, round: &Round) {
+        let next = match self.stop {
+            Stop::Samples => None,
+            Stop::Noise(_) => Round::after(self.film, self.stop, round.place, 0),
+        };
+        let mut state = self.lock();
+        state.begun -= 1;
+        state.waiting.extend(next.map(|round| round.entry()));
+        self.changed.notify_all();
+    }
+}
+
+impl Round {
+    fn entry(&self) -> Reverse<(u32, usize, u32)> {
+        Reverse((self.samples.start, self.place, self.samples.end))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{busy, job, look};
+    use super::*;
+    use crate::film::{Layout, Rect};
+    use crate::integrator::{AnyIntegrator, Classic};
+    use juggler_math::{Rgb, UVec2, Vec3};
+    use rayon::ThreadPoolBuilder;
+
+    const REGION: Rect = Rect { x: 0, y: 0, width: 35, height: 20 };
+
+    fn with_job<T: Send>(threads: usize, test: impl FnOnce(&Job) -> T + Send) -> T {
+        let world = busy();
+        let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", UVec2::new(REGION.width, REGION.height));
+        let integrator: AnyIntegrator =
+            Classic { max_depth: 1, min_weight: 1e-2, occlusion_distance: Some(2.0) }.into();
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| test(&job(&world, &camera, &integrator, 1000)))
+    }
+
+    fn means(film: &Film) -> Vec<Vec<Rgb>> {
+        (0..film.len()).map(|place| film.tile(place).unwrap().means()).collect()
+    }
+
+    fn exposed(job: &Job, film: Film, stop: Stop) -> Film {
+        expose(job, &film, stop, &Control::default()).unwrap();
+        assert!(is_finished(&film, stop));
+        film
+    }
+
+    fn whole(samples: Range<u32>) -> Film {
+        Film::new(Layout::new(REGION), samples)
+    }
+
+    #[test]
+    fn rounds_are_whole_blocks_and_grow_by_half_at_most() {
+        let mut ends = vec![0];
+        while *ends.last().unwrap() < 3000 {
+            ends.push(round_after(*ends.last().unwrap()));
+        }
+        assert_eq!(ends[..12], [0, 16, 32, 64, 96, 128, 192, 256, 384, 512, 768, 1024]);
+        assert!(ends.windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_ROUND && pair[1] % BLOCK == 0));
+        assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
+        assert_eq!(round_after(70), 96, "within a round, to its end");
+    }
+
+    #[test]
+    fn a_film_is_what_one_piece_of_work_gives() {
+        with_job(3, |job| {
+            let film = exposed(job, whole(0..37), Stop::Samples);
+            for place in 0..film.len() {
+                let tile = film.tile(place).unwrap();
+                assert_eq!(*tile, job.render(&Work::first(tile.pixels(), 37), &Control::default()).unwrap());
+            }
+        });
+    }
+
+    #[test]
+    fn parts_and_extensions_are_one_straight_run() {
+        with_job(2, |job| {
+            let straight = exposed(job, whole(0..70), Stop::Samples);
+            // Some of it, and more of some tiles, then all.
+            let begun = exposed(job, whole(0..21), Stop::Samples);
+            let film = whole(0..70);
+            begun.tiles().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
+            let some = exposed(job, Film::of(film.layout(), [(1, 32..64), (4, 48..70)]), Stop::Samples);
+            some.tiles().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
+            assert!(!is_finished(&film, Stop::Samples));
+            assert_eq!(means(&exposed(job, film, Stop::Samples)), means(&straight));
+        });
+    }
+
+    #[test]
+    fn noise_decides_the_same_on_any_number_of_threads_and_after_any_stop() {
+        let stop = Stop::Noise(0.008);
+        let straight = with_job(1, |job| exposed(job, whole(0..600), stop));
+        let counts = straight.counts();
+        assert!(counts.iter().any(|count| *count == 64) && counts.iter().any(|count| *count > 64), "{counts:?}");
+        let stopped = with_job(3, |job| {
+            let control = Control::default();
+            let film = whole(0..600);
+            rayon::join(
+                || expose(job, &film, stop, &control),
+                || {
+                    while control.samples() < 20_000 {
+                        std::thread::yield_now();
+                    }
+                    control.cancel();
+                },
+            )
+            .0
+            .unwrap_err();
+            assert!(film.samples() < straight.samples());
+            exposed(job, film, stop)
+        });
+        assert_eq!(stopped.counts(), counts);
+        assert_eq!(means(&stopped), means(&straight));
+    }
+
+    #[test]
+    fn finishing_leaves_whole_rounds_of_the_first_tiles() {
+        let film = with_job(2, |job| {
+            let (film, control) = (whole(0..1000), Control::default());
+            std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    while control.samples() < 30_000 {
+                        std::thread::yield_now();
+                    }
+                    control.finish();
+                });
+                expose(job, &film, Stop::Samples, &control).unwrap();
+            });
+            film
+        });
+        let counts = film.counts();
+        assert!(counts.windows(2).all(|pair| pair[0] >= pair[1]) && counts[0] < 1000, "{counts:?}");
+        assert!((0..film.len()).all(|place| film.tile(place).unwrap().is_gapless()));
+    }
+}
