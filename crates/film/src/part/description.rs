@@ -1,10 +1,14 @@
 //! What a part says about itself: the JSON text at its head.
 
-use juggler_tracer::film::{Layout, Rect};
+use crate::share::whole_tiles;
+use juggler_tracer::film::{BLOCK, Layout, Rect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::Range;
+
+/// Largest width and height of a picture.
+const MAX_EDGE: u32 = 65_536;
 
 /// When a picture is finished.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -121,6 +125,9 @@ impl Description {
     pub(super) fn fault(&self) -> Option<&'static str> {
         let Self { size: [width, height], region, share, stop, .. } = self;
         let inside = |start: u32, length: u32, end: u32| start.checked_add(length).is_some_and(|at| at <= end);
+        if *width > MAX_EDGE || *height > MAX_EDGE {
+            return Some("its picture is larger than any that can be rendered");
+        }
         if !inside(region.x, region.width, *width) || !inside(region.y, region.height, *height) {
             return Some("its region is not inside its picture");
         }
@@ -135,8 +142,13 @@ impl Description {
         if share.index >= share.count {
             return Some("its share is none of those that there are");
         }
-        if share.samples.start > share.samples.end || share.samples.end > self.samples {
-            return Some("its samples are none of the picture's");
+        let Range { start, end } = share.samples;
+        let between_blocks = start.is_multiple_of(BLOCK) && (end.is_multiple_of(BLOCK) || end == self.samples);
+        if start > end || end > self.samples || !between_blocks {
+            return Some("its samples are none of the picture's, or not cut between blocks of 16");
+        }
+        if share.crop.is_some_and(|crop| crop.intersection(region) != crop || whole_tiles(region, &crop) != crop) {
+            return Some("its pixels are no whole tiles of its region");
         }
         None
     }

@@ -82,6 +82,11 @@ impl Part {
         }
     }
 
+    /// What it holds is no longer what it held when it was opened.
+    pub(crate) fn changed(&self, what: &str) -> PartError {
+        PartError::Damaged { file: self.path.display().to_string(), what: format!("changed while it was read: {what}") }
+    }
+
     /// Reads and checks every chunk, one at a time.
     pub fn verify(&self) -> Result<(), PartError> {
         let mut reader = self.reader()?;
