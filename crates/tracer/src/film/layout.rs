@@ -1,10 +1,13 @@
 //! How a picture is cut into tiles.
 
+use serde::{Deserialize, Serialize};
+
 /// Edge of a tile in pixels.
 pub const TILE: u32 = 16;
 
 /// A rectangle of pixels; x to the right, y down, from the picture's top left.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Rect {
     /// First column.
     pub x: u32,

@@ -1,0 +1,263 @@
+//! Parts in every order and cut against the whole; and exact complaints.
+
+use super::*;
+use crate::part::{Share, Stop, write};
+use crate::share::{Work, whole_tiles};
+use crate::testing::{description, tile, tiles};
+use juggler_math::testing::Random;
+use juggler_tracer::film::Rect;
+use std::path::PathBuf;
+
+const REGION: Rect = Rect { x: 5, y: 3, width: 70, height: 40 };
+const SAMPLES: u32 = 100;
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Writes a part that holds this much.
+    fn part(&self, name: &str, description: &Description, units: &[(u64, std::ops::Range<u32>)]) -> PathBuf {
+        let layout = description.layout();
+        let tiles =
+            units.iter().map(|(number, samples)| (*number, tile(layout.tile(*number).unwrap(), samples.clone())));
+        let path = self.path(name);
+        let mut joined: std::collections::BTreeMap<u64, Tile> = Default::default();
+        for (number, tile) in tiles {
+            joined.entry(number).or_insert_with(|| Tile::new(tile.pixels())).merge(tile).unwrap();
+        }
+        write(&path, description, joined).unwrap();
+        path
+    }
+
+    /// Writes share `index` of `count`.
+    fn share(&self, index: u32, count: u32) -> PathBuf {
+        let share = Share { index, count, ..Share::whole(SAMPLES) };
+        let description = Description { share, ..description(REGION, SAMPLES) };
+        let units = Work::of(&description).share(index, count);
+        let units: Vec<_> = units.into_iter().map(|unit| (unit.tile, unit.samples)).collect();
+        self.part(&format!("{index}.jfilm"), &description, &units)
+    }
+
+    fn complaints(&self, files: &[PathBuf]) -> String {
+        let error = Merge::open(files, Wanted::Whole).unwrap_err();
+        error.to_string().replace(&format!("{}/", self.0.path().display()), "")
+    }
+}
+
+/// The picture of all tiles, pixel by pixel.
+fn whole() -> (Vec<Rgb>, Summary) {
+    let Rect { x, y, width, height } = REGION;
+    let mut pixels = vec![Rgb::BLACK; REGION.area() as usize];
+    for (_, tile) in tiles(REGION, 0..SAMPLES) {
+        let place = tile.pixels();
+        for (pixel, mean) in (0..).zip(tile.means()) {
+            let (column, row) = (place.x - x + pixel % place.width, place.y - y + pixel / place.width);
+            pixels[(row * width + column) as usize] = mean;
+        }
+    }
+    let mut digest = Digest::new(width, height);
+    digest.update(&pixels);
+    (pixels, digest.finish())
+}
+
+fn merged(files: &[PathBuf]) -> (Vec<Rgb>, Summary) {
+    let merge = Merge::open(files, Wanted::Whole).unwrap();
+    assert!(merge.description().finished && merge.description().share == Share::whole(SAMPLES));
+    let mut pixels = Vec::new();
+    let summary = merge.rows(|rows| {
+        assert_eq!(rows.len() % REGION.width as usize, 0);
+        pixels.extend_from_slice(rows);
+        Ok::<(), PartError>(())
+    });
+    (pixels, summary.unwrap())
+}
+
+fn shuffle<T>(items: &mut [T], random: &mut Random) {
+    (1..items.len()).for_each(|i| items.swap(i, random.below(i + 1)));
+}
+
+#[test]
+fn shares_in_any_order_are_the_whole() {
+    let mut random = Random::new(3);
+    let expected = whole();
+    for count in 1..=7 {
+        let folder = Folder::new();
+        let mut files: Vec<PathBuf> = (0..count).map(|index| folder.share(index, count)).collect();
+        shuffle(&mut files, &mut random);
+        assert_eq!(merged(&files), expected, "{count} shares");
+    }
+}
+
+#[test]
+fn any_cut_and_any_way_of_joining_is_the_whole() {
+    let mut random = Random::new(4);
+    let expected = whole();
+    let layout = Layout::new(REGION);
+    for round in 0..6 {
+        let folder = Folder::new();
+        let mut parts: Vec<Vec<(u64, std::ops::Range<u32>)>> = vec![Vec::new(); 2 + round];
+        for tile in 0..layout.tiles() {
+            let mut cuts: Vec<u32> =
+                (0..random.below(4)).map(|_| 16 * random.below(7) as u32).chain([0, SAMPLES]).collect();
+            cuts.sort_unstable();
+            for cut in cuts.windows(2).filter(|cut| cut[0] < cut[1]) {
+                let chosen = random.below(parts.len());
+                parts[chosen].push((tile, cut[0]..cut[1]));
+            }
+        }
+        let description = description(REGION, SAMPLES);
+        let part = |(i, units): (usize, &Vec<_>)| folder.part(&format!("{i}.jfilm"), &description, units);
+        let mut files: Vec<PathBuf> = parts.iter().enumerate().map(part).collect();
+        shuffle(&mut files, &mut random);
+        assert_eq!(merged(&files), expected);
+        // Some of them first, into one part, then the rest.
+        let half = files.split_off(files.len() / 2);
+        let joined = folder.path("joined.jfilm");
+        let first = Merge::open(&half, Wanted::Part).unwrap();
+        assert!(!first.description().finished);
+        first.write(&joined).unwrap();
+        files.push(joined);
+        assert_eq!(merged(&files), expected);
+        let one = folder.path("one.jfilm");
+        Merge::open(&files, Wanted::Whole).unwrap().write(&one).unwrap();
+        assert_eq!(merged(std::slice::from_ref(&one)), expected);
+        let all = folder.path("all.jfilm");
+        write(&all, &description, tiles(REGION, 0..SAMPLES)).unwrap();
+        assert_eq!(std::fs::read(one).unwrap(), std::fs::read(all).unwrap(), "the very file of a single render");
+    }
+}
+
+#[test]
+fn the_order_of_files_does_not_show_in_the_part() {
+    let folder = Folder::new();
+    let mut files: Vec<PathBuf> = (0..3).map(|index| folder.share(index, 3)).collect();
+    let (a, b) = (folder.path("a.jfilm"), folder.path("b.jfilm"));
+    Merge::open(&files, Wanted::Whole).unwrap().write(&a).unwrap();
+    files.reverse();
+    Merge::open(&files, Wanted::Whole).unwrap().write(&b).unwrap();
+    assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap());
+}
+
+#[test]
+fn all_that_is_wrong_is_said_at_once() {
+    let folder = Folder::new();
+    let mut files: Vec<PathBuf> = (0..20).map(|index| folder.share(index, 20)).collect();
+    // Shares 3, 7, 8 and 9 are missing; 11 is damaged, 12 cut short, 13 of another scene, 14 there twice.
+    let bytes = std::fs::read(&files[11]).unwrap();
+    let middle = bytes.len() - 200;
+    std::fs::write(&files[11], [&bytes[..middle], &[bytes[middle] ^ 1], &bytes[middle + 1..]].concat()).unwrap();
+    let bytes = std::fs::read(&files[12]).unwrap();
+    std::fs::write(&files[12], &bytes[..700]).unwrap();
+    let mut other = Part::open(&files[13]).unwrap().description().clone();
+    other.fingerprint.insert("scene".into(), "other".into());
+    other.frame = 3.0;
+    files[13] = folder.part("13.jfilm", &other, &[]);
+    std::fs::copy(&files[14], folder.path("14b.jfilm")).unwrap();
+    files.insert(15, folder.path("14b.jfilm"));
+    files.drain(7..10);
+    files.remove(3);
+    let tiles = Work::of(&description(REGION, SAMPLES)).share(14, 20).len();
+    let expected = format!(
+        "the parts cannot be merged:
+  12.jfilm: is cut short: 700 of {} bytes are there
+  13.jfilm: is of another picture than 0.jfilm: frame: 3 instead of 2.4000000000000004; scene: other instead of 5ce4e
+  11.jfilm: is damaged: its head or index is not what was written
+  14b.jfilm: holds samples that 14.jfilm holds too, of {tiles} tiles
+  still to do: --shard 3,7-9,11-13/20 (7 shards are missing)",
+        bytes.len()
+    );
+    let mut found: Vec<String> = folder.complaints(&files).lines().map(String::from).collect();
+    let mut expected: Vec<String> = expected.lines().map(String::from).collect();
+    found.sort();
+    expected.sort();
+    assert_eq!(found, expected);
+    let error = Merge::open(&files, Wanted::Whole).unwrap_err();
+    assert!(error.is_of_files());
+    assert_eq!(error.to_do(), Some(&ToDo::Shards { shards: vec![3, 7, 8, 9, 11, 12, 13], count: 20 }));
+}
+
+#[test]
+fn missing_samples_of_parts_that_are_no_shares_are_named() {
+    let folder = Folder::new();
+    let description = description(REGION, SAMPLES);
+    let units: Vec<_> = (0..14).map(|tile| (tile, 0..48)).collect();
+    let files = [folder.part("a.jfilm", &description, &units), folder.part("b.jfilm", &description, &[(1, 48..64)])];
+    let expected = "the parts cannot be merged:
+  still to do: samples 0..100 of 1 tile (the first at 64,32), samples 48..100 of 13 tiles (the first at 5,3), \
+        samples 64..100 of 1 tile (the first at 16,3)";
+    assert_eq!(folder.complaints(&files), expected);
+    assert!(!Merge::open(&files, Wanted::Whole).unwrap_err().is_of_files());
+    let part = Merge::open(&files, Wanted::Part).unwrap();
+    assert!(!part.description().finished);
+}
+
+#[test]
+fn the_same_file_twice_is_doubled() {
+    let folder = Folder::new();
+    let file = folder.share(0, 1);
+    let tiles = Layout::new(REGION).tiles();
+    let expected =
+        format!("the parts cannot be merged:\n  0.jfilm: holds samples that 0.jfilm holds too, of {tiles} tiles");
+    assert_eq!(folder.complaints(&[file.clone(), file.clone()]), expected);
+    assert!(Merge::open(&[file.clone(), file], Wanted::Part).is_err());
+}
+
+#[test]
+fn damaged_chunks_are_found_before_anything_is_merged() {
+    let folder = Folder::new();
+    let files: Vec<PathBuf> = (0..3).map(|index| folder.share(index, 3)).collect();
+    let mut bytes = std::fs::read(&files[1]).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 16;
+    std::fs::write(&files[1], bytes).unwrap();
+    let complaints = folder.complaints(&files);
+    assert!(complaints.contains("1.jfilm: is damaged: the bytes of tile"), "{complaints}");
+    assert!(complaints.contains("still to do: --shard 1/3 (1 shard is missing)"), "{complaints}");
+}
+
+#[test]
+fn parts_that_noise_ends_have_as_many_samples_as_they_needed() {
+    let folder = Folder::new();
+    let noise = Description { stop: Stop::Noise { level: 0.1 }, ..description(REGION, SAMPLES) };
+    let half = |index| Description { share: Share { index, count: 2, ..Share::whole(SAMPLES) }, ..noise.clone() };
+    let units = |index| {
+        Work::of(&noise).share(index, 2).into_iter().map(|unit| (unit.tile, 0..16 + 16 * (unit.tile as u32 % 3)))
+    };
+    let units = |index| units(index).collect::<Vec<_>>();
+    let files = [folder.part("0.jfilm", &half(0), &units(0)), folder.part("1.jfilm", &half(1), &units(1))];
+    assert!(Merge::open(&files, Wanted::Whole).unwrap().description().finished);
+    let unfinished = Description { finished: false, ..half(1) };
+    folder.part("1.jfilm", &unfinished, &units(1));
+    let expected = "the parts cannot be merged:
+  1.jfilm: is not finished; the same command goes on with it
+  still to do: --shard 1/2 (1 shard is missing)";
+    assert_eq!(folder.complaints(&files), expected);
+}
+
+#[test]
+fn crops_are_parts_too() {
+    let folder = Folder::new();
+    let layout = Layout::new(REGION);
+    let half = |name: &str, crop: Rect| {
+        let share = Share { crop: Some(whole_tiles(&REGION, &crop)), ..Share::whole(SAMPLES) };
+        let description = Description { share, ..description(REGION, SAMPLES) };
+        let units = Work::of(&description).share(0, 1);
+        assert!(!units.is_empty() && units.len() < layout.tiles() as usize);
+        folder.part(name, &description, &units.into_iter().map(|unit| (unit.tile, unit.samples)).collect::<Vec<_>>())
+    };
+    let files = [half("a.jfilm", Rect { width: 27, ..REGION }), half("b.jfilm", Rect { x: 32, width: 43, ..REGION })];
+    assert_eq!(merged(&files), whole());
+}
+
+#[test]
+fn nothing_is_no_picture() {
+    let error = Merge::open::<PathBuf>(&[], Wanted::Whole).unwrap_err();
+    assert_eq!(error.to_string(), "the parts cannot be merged:\n  no part was given");
+}

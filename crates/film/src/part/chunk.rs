@@ -1,0 +1,59 @@
+//! The bytes of one tile: its runs, each with its samples' range and its packed sums.
+
+use super::pack::{pack, unpack};
+use juggler_tracer::film::{Rect, Run, Tile};
+
+/// Most runs that a tile in a file may have.
+pub(super) const MAX_RUNS: usize = 4096;
+/// Bytes before the packed sums of a run.
+const RUN: usize = 12;
+
+/// One tile as it stands in a file. Making it needs nothing else, so that many threads can.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chunk {
+    pub(super) pixels: Rect,
+    pub(super) runs: usize,
+    pub(super) bytes: Vec<u8>,
+    pub(super) hash: [u8; 32],
+}
+
+impl Chunk {
+    /// Packs a tile.
+    pub fn encode(tile: &Tile) -> Self {
+        let mut bytes = Vec::new();
+        for run in tile.runs() {
+            let packed = pack(&run.sums);
+            bytes.extend_from_slice(&run.samples.start.to_le_bytes());
+            bytes.extend_from_slice(&run.samples.end.to_le_bytes());
+            // A tile's sums are a few kilobytes.
+            bytes.extend_from_slice(&(packed.len() as u32).to_le_bytes());
+            bytes.extend_from_slice(&packed);
+        }
+        let hash = *blake3::hash(&bytes).as_bytes();
+        Self { pixels: tile.pixels(), runs: tile.runs().len(), bytes, hash }
+    }
+}
+
+/// The tile that a chunk's bytes describe, for a picture of `samples` samples; or what is wrong with them.
+pub(super) fn decode(mut bytes: &[u8], pixels: Rect, samples: u32) -> Result<Tile, String> {
+    let mut tile = Tile::new(pixels);
+    let mut runs = 0;
+    while !bytes.is_empty() {
+        let (head, rest) = bytes.split_first_chunk::<RUN>().ok_or("a run of samples ends too early")?;
+        let [a, b, c, d, e, f, g, h, i, j, k, l] = *head;
+        let range = u32::from_le_bytes([a, b, c, d])..u32::from_le_bytes([e, f, g, h]);
+        let length = u32::from_le_bytes([i, j, k, l]) as usize;
+        let (packed, rest) = rest.split_at_checked(length).ok_or("a run of samples ends too early")?;
+        runs += 1;
+        if runs > MAX_RUNS {
+            return Err(format!("it has more than {MAX_RUNS} runs of samples"));
+        }
+        if range.end > samples {
+            return Err(format!("it has samples up to {}, its picture {samples}", range.end));
+        }
+        let sums = unpack(packed, pixels.area() as usize).ok_or("packed sums cannot be unpacked")?;
+        tile.add(Run { samples: range, sums }).map_err(|error| error.to_string())?;
+        bytes = rest;
+    }
+    Ok(tile)
+}

@@ -1,0 +1,180 @@
+//! What a part says about itself: the JSON text at its head.
+
+use crate::share::whole_tiles;
+use juggler_tracer::film::{BLOCK, Layout, Rect};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Largest width and height of a picture.
+const MAX_EDGE: u32 = 65_536;
+
+/// When a picture is finished.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Stop {
+    /// Every pixel has as many samples as the picture is to have.
+    Samples,
+    /// Every pixel's relative error is below this.
+    Noise {
+        /// Relative error.
+        level: f64,
+    },
+    /// So much time was spent.
+    Time {
+        /// Seconds.
+        seconds: f64,
+    },
+}
+
+/// Which part of the picture this was to become.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Share {
+    /// Which of `count` shares, from 0 on.
+    pub index: u32,
+    /// How many shares the picture is cut into: 1 when it is not.
+    pub count: u32,
+    /// The samples that are cut: all of the picture's, or a range that somebody chose.
+    pub samples: Range<u32>,
+    /// The pixels that are cut when they are not all of the region: whole tiles.
+    pub crop: Option<Rect>,
+}
+
+impl Share {
+    /// All of a picture of so many samples.
+    pub fn whole(samples: u32) -> Self {
+        Self { index: 0, count: 1, samples: 0..samples, crop: None }
+    }
+}
+
+/// What a part says about itself and the picture that it belongs to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// The program that wrote it, with its version.
+    pub software: String,
+    /// The command that renders the whole picture.
+    pub command: String,
+    /// Name of the scene.
+    pub scene: String,
+    /// The frame, which may lie between two.
+    pub frame: f64,
+    /// Width and height of what the camera sees.
+    pub size: [u32; 2],
+    /// What the finished picture shows of it: everything, or a crop.
+    pub region: Rect,
+    /// Samples per pixel: as many there will be, or at most as many when noise or time ends the picture.
+    pub samples: u32,
+    /// When the picture is finished.
+    pub stop: Stop,
+    /// Which part of the picture this was to become.
+    pub share: Share,
+    /// Whether it became that: the picture's rule to stop holds for every tile of the share.
+    pub finished: bool,
+    /// Named parts of everything that decides a pixel, as texts or hashes.
+    pub fingerprint: BTreeMap<String, String>,
+    /// The tone curve and its numbers, for the picture's file.
+    pub tone: Value,
+    /// Texts for the picture's file.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// What two parts do not have in common though they should.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    /// What it is: `size`, or a name in the fingerprint.
+    pub name: String,
+    /// What the one has; empty when nothing.
+    pub here: String,
+    /// What the other has; empty when nothing.
+    pub there: String,
+}
+
+impl Description {
+    /// How the picture is cut into tiles, which chunks are numbered by.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.region)
+    }
+
+    /// In what another part differs, so that both cannot belong to one picture. Shares, tone curve and texts may
+    /// differ.
+    pub fn mismatches(&self, other: &Self) -> Vec<Mismatch> {
+        let mut found = Vec::new();
+        let mut compare = |name: &str, here: String, there: String| {
+            if here != there {
+                found.push(Mismatch { name: name.to_owned(), here, there });
+            }
+        };
+        compare("frame", self.frame.to_string(), other.frame.to_string());
+        compare("size", size(self.size), size(other.size));
+        compare("region", rect(&self.region), rect(&other.region));
+        compare("samples", self.samples.to_string(), other.samples.to_string());
+        compare("stop", self.stop.to_string(), other.stop.to_string());
+        let names =
+            self.fingerprint.keys().chain(other.fingerprint.keys().filter(|k| !self.fingerprint.contains_key(*k)));
+        for name in names {
+            let value = |of: &Self| of.fingerprint.get(name).cloned().unwrap_or_default();
+            compare(name, value(self), value(other));
+        }
+        found
+    }
+
+    /// What is wrong with it in itself; nothing is, in what the program writes.
+    pub(super) fn fault(&self) -> Option<&'static str> {
+        let Self { size: [width, height], region, share, stop, .. } = self;
+        let inside = |start: u32, length: u32, end: u32| start.checked_add(length).is_some_and(|at| at <= end);
+        if *width > MAX_EDGE || *height > MAX_EDGE {
+            return Some("its picture is larger than any that can be rendered");
+        }
+        if !inside(region.x, region.width, *width) || !inside(region.y, region.height, *height) {
+            return Some("its region is not inside its picture");
+        }
+        let number = match *stop {
+            Stop::Samples => 0.0,
+            Stop::Noise { level } => level,
+            Stop::Time { seconds } => seconds,
+        };
+        if !self.frame.is_finite() || !number.is_finite() {
+            return Some("one of its numbers is none");
+        }
+        if share.index >= share.count {
+            return Some("its share is none of those that there are");
+        }
+        let Range { start, end } = share.samples;
+        let between_blocks = start.is_multiple_of(BLOCK) && (end.is_multiple_of(BLOCK) || end == self.samples);
+        if start > end || end > self.samples || !between_blocks {
+            return Some("its samples are none of the picture's, or not cut between blocks of 16");
+        }
+        if share.crop.is_some_and(|crop| crop.intersection(region) != crop || whole_tiles(region, &crop) != crop) {
+            return Some("its pixels are no whole tiles of its region");
+        }
+        None
+    }
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Samples => f.write_str("samples"),
+            Self::Noise { level } => write!(f, "noise {level}"),
+            Self::Time { seconds } => write!(f, "time {seconds} s"),
+        }
+    }
+}
+
+impl std::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let shown = |text: &str| if text.is_empty() { "nothing".to_owned() } else { text.to_owned() };
+        write!(f, "{}: {} instead of {}", self.name, shown(&self.there), shown(&self.here))
+    }
+}
+
+fn size([width, height]: [u32; 2]) -> String {
+    format!("{width}x{height}")
+}
+
+fn rect(Rect { x, y, width, height }: &Rect) -> String {
+    format!("{x},{y},{width},{height}")
+}

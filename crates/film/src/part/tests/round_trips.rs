@@ -1,0 +1,166 @@
+//! What is written comes back, to the bit.
+
+use super::super::pack::{pack, unpack};
+use crate::testing::{description, place, tile, tiles};
+use crate::*;
+use juggler_tracer::film::{Layout, Rect, Run, Sum, Tile};
+use proptest::prelude::*;
+
+const REGION: Rect = Rect { x: 5, y: 3, width: 40, height: 20 };
+
+/// Equal to the bit, signs of zeros and all.
+fn bits(sums: &[Sum]) -> Vec<([u64; 3], [u32; 3])> {
+    sums.iter().map(|sum| (sum.total.map(f64::to_bits), sum.spread.map(f32::to_bits))).collect()
+}
+
+#[test]
+fn a_part_comes_back() {
+    let (_folder, path) = place("a.jfilm");
+    let description = description(REGION, 100);
+    let tiles = tiles(REGION, 0..100);
+    let bytes = write(&path, &description, tiles.clone()).unwrap();
+    assert_eq!(bytes, std::fs::metadata(&path).unwrap().len());
+    let part = Part::open(&path).unwrap();
+    assert_eq!((part.bytes(), part.path()), (bytes, path.as_path()));
+    assert_eq!(part.description(), &description);
+    assert_eq!(part.tiles().collect::<Vec<_>>(), (0..6).collect::<Vec<_>>());
+    assert_eq!(part.tiles_in(2, 5).collect::<Vec<_>>(), [2, 3, 4]);
+    assert_eq!(part.tiles_in(5, 3).len(), 0);
+    part.verify().unwrap();
+    for (number, tile) in tiles {
+        assert_eq!(part.tile(number).unwrap(), tile);
+    }
+    assert!(matches!(part.tile(6), Err(PartError::Damaged { .. })), "no such tile");
+}
+
+#[test]
+fn tiles_come_in_any_order_and_some_do_not() {
+    let (_folder, path) = place("a.jfilm");
+    let layout = Layout::new(REGION);
+    let some = [5, 1, 4].map(|number| (number, tile(layout.tile(number).unwrap(), 0..16)));
+    write(&path, &description(REGION, 100), some.clone()).unwrap();
+    let part = Part::open(&path).unwrap();
+    assert_eq!(part.tiles().collect::<Vec<_>>(), [1, 4, 5]);
+    for (number, tile) in some {
+        assert_eq!(part.tile(number).unwrap(), tile);
+    }
+    assert_eq!(part.tile(3).unwrap(), Tile::new(layout.tile(3).unwrap()));
+}
+
+#[test]
+fn the_head_is_text() {
+    let (_folder, path) = place("a.jfilm");
+    write(&path, &description(REGION, 100), []).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let head = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let text = std::str::from_utf8(&bytes[32..32 + head]).unwrap();
+    assert!(text.starts_with("{\n") && text.ends_with("}\n"), "{text}");
+    assert!(text.contains("\"command\": \"juggler render ball --size 64x48\""), "{text}");
+    assert!(is_part(&bytes) && !is_part(b"\x89PNG\r\n\x1a\n"));
+}
+
+#[test]
+fn tiles_of_other_pixels_and_tiles_given_twice_are_refused() {
+    let (folder, path) = place("a.jfilm");
+    let layout = Layout::new(REGION);
+    let one = tile(layout.tile(1).unwrap(), 0..16);
+    let refused = |tiles: &[(u64, Tile)]| write(&path, &description(REGION, 100), tiles.to_vec()).unwrap_err();
+    assert!(refused(&[(2, one.clone())]).to_string().contains("tile 2 has other pixels"));
+    assert!(refused(&[(8, one.clone())]).to_string().contains("tile 8 has other pixels"));
+    assert!(refused(&[(1, one.clone()), (1, one)]).to_string().contains("tile 1 is there twice"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left behind");
+}
+
+#[test]
+fn descriptions_that_cannot_be_are_refused() {
+    let (_folder, path) = place("a.jfilm");
+    let good = description(REGION, 100);
+    let wrong = [
+        Description { size: [44, 100], ..good.clone() },
+        Description { region: Rect { x: u32::MAX, ..REGION }, ..good.clone() },
+        Description { frame: f64::NAN, ..good.clone() },
+        Description { stop: Stop::Noise { level: f64::INFINITY }, ..good.clone() },
+        Description { share: Share { index: 1, ..Share::whole(100) }, ..good.clone() },
+        Description { share: Share::whole(101), ..good.clone() },
+        Description { command: "x".repeat(1 << 20), ..good.clone() },
+    ];
+    for description in wrong {
+        assert!(matches!(write(&path, &description, []), Err(PartError::Unfit { .. })), "{description:?}");
+    }
+    assert!(!path.exists());
+}
+
+#[test]
+fn mismatches_are_named() {
+    let one = description(REGION, 100);
+    assert_eq!(one.mismatches(&Description { command: String::new(), finished: false, ..one.clone() }), []);
+    let mut other = Description { stop: Stop::Noise { level: 0.01 }, size: [50, 60], ..one.clone() };
+    other.fingerprint.remove("seed");
+    other.fingerprint.insert("scene".into(), "0".into());
+    other.fingerprint.insert("zeal".into(), "1".into());
+    let words: Vec<String> = one.mismatches(&other).iter().map(ToString::to_string).collect();
+    let expected = [
+        "size: 50x60 instead of 45x23",
+        "stop: noise 0.01 instead of samples",
+        "scene: 0 instead of 5ce4e",
+        "seed: nothing instead of 7",
+        "zeal: 1 instead of nothing",
+    ];
+    assert_eq!(words, expected);
+}
+
+fn sum() -> impl Strategy<Value = Sum> {
+    // All bit patterns: zeros of both signs, subnormal, infinite and no numbers among them.
+    let total = prop_oneof![any::<u64>().prop_map(f64::from_bits), (-1e6..1e6f64), Just(0.0)];
+    let spread = prop_oneof![any::<u32>().prop_map(f32::from_bits), (0.0..1e3f32), Just(0.0)];
+    (prop::array::uniform3(total), prop::array::uniform3(spread)).prop_map(|(total, spread)| Sum { total, spread })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn sums_of_all_bits_come_back(sums in prop::collection::vec(sum(), 0..300)) {
+        let packed = pack(&sums);
+        prop_assert_eq!(bits(&unpack(&packed, sums.len()).unwrap()), bits(&sums));
+        prop_assert!(sums.len() % 8 == 7 || unpack(&packed, sums.len() + 8).is_none());
+    }
+
+    #[test]
+    fn any_part_comes_back(
+        (x, y, width, height) in (0..40u32, 0..40u32, 1..50u32, 1..50u32),
+        kept in any::<u64>(),
+        (start, blocks, open) in (0..9u32, 0..9u32, 0..16u32),
+    ) {
+        let region = Rect { x, y, width, height };
+        let (_folder, path) = place("a.jfilm");
+        let samples = start * 16..(start + blocks) * 16 + open;
+        let tiles: Vec<_> = tiles(region, samples).into_iter().filter(|(number, _)| kept >> number & 1 == 1).collect();
+        write(&path, &description(region, 1000), tiles.clone()).unwrap();
+        let part = Part::open(&path).unwrap();
+        prop_assert_eq!(part.tiles().collect::<Vec<_>>(), tiles.iter().map(|(number, _)| *number).collect::<Vec<_>>());
+        for (number, tile) in tiles {
+            prop_assert_eq!(part.tile(number).unwrap(), tile);
+        }
+    }
+}
+
+#[test]
+fn smooth_pixels_take_little_room() {
+    let sums: Vec<Sum> =
+        (0..256).map(|i| Sum { total: [1.0 + f64::from(i as f32 / 1000.0); 3], ..Sum::default() }).collect();
+    let size = pack(&sums).len();
+    assert!(size < sums.len() * 36 / 4, "{size}");
+}
+
+#[test]
+fn a_tile_in_too_many_runs_is_refused() {
+    let (_folder, path) = place("a.jfilm");
+    let region = Rect { x: 0, y: 0, width: 1, height: 1 };
+    let mut tile = Tile::new(region);
+    for number in 0..4097 {
+        tile.add(Run { samples: number * 32..number * 32 + 16, sums: vec![Sum::default()] }).unwrap();
+    }
+    let error = write(&path, &description(region, 1 << 20), [(0, tile)]).unwrap_err();
+    assert!(error.to_string().contains("4097 runs"), "{error}");
+}
