@@ -2,7 +2,7 @@
 
 use crate::command::Command;
 use crate::progress::Progress;
-use crate::value::{self, FrameRange};
+use crate::value::{self, FrameRange, Shard};
 use clap::{Args as Arguments, Parser};
 use juggler::tracer::film::Rect;
 
@@ -65,6 +65,18 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216), help_heading = "Picture")]
     pub samples: Option<u32>,
 
+    /// Stop when the relative error of every part of the picture is at most this, 0.02 being 2 %; `--samples` is then the most
+    #[arg(long, value_name = "LEVEL", value_parser = value::noise, conflicts_with = "time", help_heading = "Picture")]
+    pub noise: Option<f32>,
+
+    /// Stop after so many seconds of rendering; `--samples` is then the most
+    #[arg(long, value_name = "SECONDS", value_parser = value::seconds, help_heading = "Picture")]
+    pub time: Option<f64>,
+
+    /// Take as many samples everywhere as a picture or film part did that was ended by `--time`
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "noise", "time"], help_heading = "Picture")]
+    pub samples_from: Option<String>,
+
     /// How light is followed
     #[arg(long, value_name = "NAME", help_heading = "Picture")]
     pub integrator: Option<String>,
@@ -96,6 +108,23 @@ pub struct RenderArgs {
     /// Another seed, another noise
     #[arg(long, value_name = "N", help_heading = "Picture")]
     pub seed: Option<u64>,
+
+    /// Keep the work in this film part (.jfilm) while it is done, and go on with what is there: nothing is lost
+    #[arg(long, value_name = "FILE", help_heading = "Parts")]
+    pub checkpoint: Option<String>,
+
+    /// How often it is kept
+    #[arg(long, value_name = "SECONDS", value_parser = value::pause, default_value = "60", requires = "checkpoint", help_heading = "Parts")]
+    pub checkpoint_every: f64,
+
+    /// Part I of N parts that cost about the same, into a film part (.jfilm) for `juggler merge`; I counts from 0, `auto`
+    /// takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or HQ_TASK_ID
+    #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Parts")]
+    pub shard: Option<Shard>,
+
+    /// The samples A up to, but without, B of each pixel, into a film part; multiples of 16
+    #[arg(long, value_name = "A..B", value_parser = value::samples, conflicts_with_all = ["noise", "time", "shard", "samples_from"], help_heading = "Parts")]
+    pub sample_range: Option<std::ops::Range<u32>>,
 
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Machine")]

@@ -1,6 +1,8 @@
 //! Why the program stops short, and the exit status that says so.
 
 use juggler::Error;
+use juggler::film::checkpoint::ResumeError;
+use juggler::film::part::PartError;
 use juggler::imaging::ImageError;
 use juggler::scene::import::{Fault, ImportError};
 use juggler::scene::{Problems, SceneError};
@@ -20,8 +22,13 @@ pub enum Failure {
     Scene(Box<Problems>),
     /// A file or the system failed.
     System(String),
-    /// A signal came, by its number.
-    Interrupted(u8),
+    /// A signal came.
+    Interrupted {
+        /// Its number.
+        signal: u8,
+        /// Where the work so far is kept.
+        kept: Option<String>,
+    },
 }
 
 impl Failure {
@@ -31,7 +38,7 @@ impl Failure {
             Self::No | Self::Different(_) => 1,
             Self::Wrong(_) | Self::Scene(_) => 2,
             Self::System(_) => 3,
-            Self::Interrupted(signal) => 128_u8.saturating_add(*signal),
+            Self::Interrupted { signal, .. } => 128_u8.saturating_add(*signal),
         }
     }
 
@@ -43,7 +50,18 @@ impl Failure {
             Self::Different(message) => Some(message.clone()),
             Self::Wrong(message) | Self::System(message) => Some(format!("{label}: {message}")),
             Self::Scene(problems) => Some(problems.render(color)),
-            Self::Interrupted(_) => Some("interrupted".into()),
+            Self::Interrupted { kept: None, .. } => Some("interrupted".into()),
+            Self::Interrupted { kept: Some(file), .. } => {
+                Some(format!("interrupted: the work so far is in `{file}`, the same command goes on with it"))
+            }
+        }
+    }
+
+    /// An interrupted render whose work is kept in a file.
+    pub fn keeping(self, file: Option<String>) -> Self {
+        match self {
+            Self::Interrupted { signal, .. } => Self::Interrupted { signal, kept: file },
+            other => other,
         }
     }
 
@@ -87,6 +105,27 @@ impl From<ImageError> for Failure {
             ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } => Self::Wrong(message),
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
+        }
+    }
+}
+
+impl From<PartError> for Failure {
+    fn from(error: PartError) -> Self {
+        match &error {
+            PartError::Read { file, source } => Self::file("read", file, source),
+            PartError::Write { file, source } => Self::file("write", file, source),
+            PartError::NotAPart { .. } => Self::Wrong(error.to_string()),
+            _ => Self::System(error.to_string()),
+        }
+    }
+}
+
+impl From<ResumeError> for Failure {
+    fn from(error: ResumeError) -> Self {
+        match error {
+            ResumeError::Part(error) => error.into(),
+            ResumeError::Foreign { .. } | ResumeError::Beyond { .. } => Self::Wrong(error.to_string()),
+            ResumeError::Tile { .. } => Self::System(error.to_string()),
         }
     }
 }

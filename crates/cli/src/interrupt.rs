@@ -28,6 +28,7 @@ impl Interrupts {
     /// The signal that came, as a failure.
     pub fn caught(&self) -> Option<Failure> {
         let number = self.number.load(Relaxed);
-        (number != 0).then(|| Failure::Interrupted(u8::try_from(number).unwrap_or(u8::MAX)))
+        let signal = u8::try_from(number).unwrap_or(u8::MAX);
+        (number != 0).then_some(Failure::Interrupted { signal, kept: None })
     }
 }

@@ -1,15 +1,22 @@
 //! What `juggler render` was asked for, from what was typed.
 
+mod parts;
+mod product;
+
+pub use parts::{Checkpoint, Cut, Shard};
+pub use product::{Encoding, Product};
+
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::progress::Progress;
 use crate::source;
 use crate::value::FrameRange;
-use juggler::Settings;
-use juggler::imaging::{Format, Options, SampleDepth};
+use juggler::film::share::{self, FrameShare};
+use juggler::imaging::Options;
+use juggler::{Limit, Settings};
 use std::ops::Range;
-use std::path::Path;
+use std::time::Duration;
 
 /// Threads when the system does not say how many cores there are.
 const FALLBACK_THREADS: usize = 1;
@@ -25,8 +32,18 @@ pub struct Plan {
     pub moments: Moments,
     /// The picture's file, `-` for standard output; perhaps with `####`.
     pub output: String,
-    /// How it is written.
-    pub encoding: Encoding,
+    /// What it holds.
+    pub product: Product,
+    /// How long rendering may take.
+    pub time: Option<Duration>,
+    /// The picture or part whose numbers of samples are taken.
+    pub samples_from: Option<String>,
+    /// Where work is kept.
+    pub checkpoint: Option<Checkpoint>,
+    /// Which part of the picture or the frames.
+    pub shard: Shard,
+    /// The pixels and samples that a part is cut to by hand.
+    pub cut: Cut,
     /// The statistics' file.
     pub stats: Option<String>,
     /// How many threads render.
@@ -37,15 +54,6 @@ pub struct Plan {
     pub progress: Progress,
     /// Whether nothing is said about what was done.
     pub quiet: bool,
-}
-
-/// A file format with what it was asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Encoding {
-    /// The format.
-    pub format: Format,
-    /// The choices that it leaves.
-    pub options: Options,
 }
 
 /// Moments of an animation.
@@ -68,6 +76,10 @@ pub struct Shot {
     pub output: String,
     /// The statistics' file.
     pub stats: Option<String>,
+    /// Where its work is kept.
+    pub checkpoint: Option<String>,
+    /// Which part of this picture.
+    pub shard: Shard,
 }
 
 impl Plan {
@@ -78,33 +90,22 @@ impl Plan {
             return Err(Failure::Wrong("the output has no name".into()));
         }
         output::at_most_one_stream(&output, args.stats.as_deref())?;
-        let encoding = Encoding::new(&args, &output)?;
-        let moments = match (args.frames, args.frame, args.at) {
-            (Some(_), ..) if output == STANDARD_OUTPUT => {
-                return Err(Failure::Wrong("several frames need files: standard output holds one picture".into()));
-            }
-            (Some(range), ..) => Moments::Frames(range),
-            (_, Some(frame), _) => Moments::Frame(f64::from(frame)),
-            (_, _, Some(seconds)) => Moments::At(seconds),
-            _ => Moments::Frame(0.0),
-        };
+        let product = Product::new(&args, &output)?;
+        let (cut, checkpoint) = (Cut::new(&args, product)?, Checkpoint::new(&args)?);
+        let shard = Shard::new(args.shard, parts::variable)?;
+        let moments = Moments::new(&args, &output)?;
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
-            settings: Settings {
-                size: args.size,
-                samples: args.samples,
-                integrator: args.integrator,
-                max_depth: args.max_depth,
-                camera: args.camera,
-                seed: args.seed,
-                crop: args.crop,
-                curve: args.tone,
-                exposure_stops: args.exposure,
-            },
+            settings: settings(&args, product),
             scene: args.scene,
             moments,
             output,
-            encoding,
+            product,
+            time: args.time.map(Duration::from_secs_f64),
+            samples_from: args.samples_from,
+            checkpoint,
+            shard,
+            cut,
             stats: args.stats,
             threads: args.threads.map_or(cores, usize::from),
             max_memory: args.max_memory,
@@ -118,9 +119,28 @@ impl Plan {
         self.output == STANDARD_OUTPUT || self.stats.as_deref() == Some(STANDARD_OUTPUT)
     }
 
+    /// How the picture is written.
+    pub fn options(&self) -> Options {
+        match self.product {
+            Product::Picture(encoding) => encoding.options,
+            Product::Part => Options::default(),
+        }
+    }
+
+    /// Whether the picture is made on a film that is kept, not row by row.
+    pub fn needs_film(&self) -> bool {
+        self.product == Product::Part || self.checkpoint.is_some() || self.settings.limit != Limit::Samples
+    }
+
     /// The pictures, for an animation of this length and pace.
     pub fn shots(&self, length: u32, frames_per_second: f64) -> Result<Vec<Shot>, Failure> {
-        let single = |frame: f64| Shot { frame, output: self.output.clone(), stats: self.stats.clone() };
+        let single = |frame: f64| Shot {
+            frame,
+            output: self.output.clone(),
+            stats: self.stats.clone(),
+            checkpoint: self.checkpoint.as_ref().map(|checkpoint| checkpoint.file.clone()),
+            shard: self.shard,
+        };
         match self.moments {
             Moments::Frame(frame) => Ok(vec![single(frame)]),
             Moments::At(seconds) => Ok(vec![single(seconds * frames_per_second)]),
@@ -140,60 +160,68 @@ impl Plan {
     fn numbered(&self, frames: Range<u32>) -> Vec<Shot> {
         let name =
             |name: &str, frame| if name == STANDARD_OUTPUT { name.into() } else { output::numbered(name, frame) };
-        let shot = |frame: u32| Shot {
+        let shot = |frame: u32, shard: Shard| Shot {
             frame: f64::from(frame),
             output: name(&self.output, frame),
             stats: self.stats.as_deref().map(|stats| name(stats, frame)),
+            checkpoint: self.checkpoint.as_ref().map(|checkpoint| name(&checkpoint.file, frame)),
+            shard,
         };
-        frames.map(shot).collect()
+        let Shard { index, count } = self.shard;
+        let shares = share::frames(frames, index, count).into_iter();
+        shares.map(|FrameShare { frame, index, count }| shot(frame, Shard { index, count })).collect()
     }
 }
 
-impl Encoding {
+/// What is wished for beyond what the scene says. A picture's crop is the picture, a part's is a piece of it.
+fn settings(args: &RenderArgs, product: Product) -> Settings {
+    Settings {
+        size: args.size,
+        samples: args.samples,
+        limit: match (args.noise, args.time, &args.samples_from) {
+            (Some(level), ..) => Limit::Noise(level),
+            (_, None, None) => Limit::Samples,
+            (None, seconds, _) => Limit::Time { seconds: seconds.unwrap_or(0.0) },
+        },
+        integrator: args.integrator.clone(),
+        max_depth: args.max_depth,
+        camera: args.camera.clone(),
+        seed: args.seed,
+        crop: if product == Product::Part { None } else { args.crop },
+        curve: args.tone.clone(),
+        exposure_stops: args.exposure,
+    }
+}
+
+impl Moments {
     fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
-        let wrong = |message: String| Failure::Wrong(message);
-        let format = match &args.format {
-            Some(name) => Format::from_path(Path::new(&format!("picture.{name}")))
-                .map_err(|_| wrong(format!("no format is called `{name}`; known are {}", Format::endings())))?,
-            None if output == STANDARD_OUTPUT => Format::Png,
-            None => Format::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
-        };
-        let mut options = Options::default();
-        if let Some(bits) = args.bits {
-            set_bits(&mut options, format, bits)?;
-        }
-        if let Some(quality) = args.quality {
-            if format != Format::Jpeg {
-                return Err(wrong(format!("--quality is for JPEG files; a {format} file has none")));
+        match (args.frames, args.frame, args.at) {
+            (Some(_), ..) if output == STANDARD_OUTPUT => {
+                Err(Failure::Wrong("several frames need files: standard output holds one picture".into()))
             }
-            options.jpeg_quality = quality;
+            (Some(range), ..) => Ok(Self::Frames(range)),
+            (_, Some(frame), _) => Ok(Self::Frame(f64::from(frame))),
+            (_, _, Some(seconds)) => Ok(Self::At(seconds)),
+            _ => Ok(Self::Frame(0.0)),
         }
-        Ok(Self { format, options })
     }
-}
-
-fn set_bits(options: &mut Options, format: Format, bits: u8) -> Result<(), Failure> {
-    let possible: &[u8] = match format {
-        Format::Png => &[8, 16],
-        Format::Exr => &[16, 32],
-        Format::Pfm => &[32],
-        Format::Jpeg | Format::Webp | Format::Hdr => &[8],
-    };
-    if !possible.contains(&bits) {
-        let possible = possible.iter().map(u8::to_string).collect::<Vec<_>>().join(" or ");
-        return Err(Failure::Wrong(format!("a {format} file has {possible} bits a channel, not {bits}")));
-    }
-    options.png_16_bit = bits == 16;
-    options.exr_depth = if bits == 16 { SampleDepth::Half } else { SampleDepth::Float };
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler::imaging::{Format, SampleDepth};
+    use juggler::tracer::film::Rect;
 
     fn plan(line: &str) -> Result<Plan, Failure> {
         Plan::new(RenderArgs::of(line.split(' ')).unwrap())
+    }
+
+    fn encoding(line: &str) -> Encoding {
+        match plan(line).unwrap().product {
+            Product::Picture(encoding) => encoding,
+            Product::Part => panic!("{line}: a part"),
+        }
     }
 
     fn refused(line: &str) -> String {
@@ -207,21 +235,40 @@ mod tests {
     fn the_output_is_named_after_the_scene() {
         assert_eq!(plan("juggler").unwrap().output, "juggler.png");
         assert_eq!(plan("scenes/pawn.json").unwrap().output, "pawn.png");
-        assert_eq!(plan("a -o b.exr").unwrap().encoding.format, Format::Exr);
-        assert_eq!(plan("a -o -").unwrap().encoding.format, Format::Png);
-        assert_eq!(plan("a -o - --format jpg").unwrap().encoding.format, Format::Jpeg);
+        assert_eq!(encoding("a -o b.exr").format, Format::Exr);
+        assert_eq!(encoding("a -o -").format, Format::Png);
+        assert_eq!(encoding("a -o - --format jpg").format, Format::Jpeg);
         assert!(refused("a -o b.tga").contains(".png"));
         assert!(refused("a -o - --format tga").contains("tga"));
     }
 
     #[test]
     fn bits_and_quality_fit_the_format() {
-        assert!(plan("a --bits 16").unwrap().encoding.options.png_16_bit);
-        let exr = |line| plan(line).unwrap().encoding.options.exr_depth;
+        assert!(encoding("a --bits 16").options.png_16_bit);
+        let exr = |line| encoding(line).options.exr_depth;
         assert_eq!((exr("a -o b.exr --bits 16"), exr("a -o b.exr")), (SampleDepth::Half, SampleDepth::Float));
-        assert_eq!(plan("a -o b.jpg --quality 7").unwrap().encoding.options.jpeg_quality, 7);
+        assert_eq!(encoding("a -o b.jpg --quality 7").options.jpeg_quality, 7);
         assert!(refused("a -o b.jpg --bits 16").contains("8 bits"));
         assert!(refused("a --quality 7").contains("JPEG"));
+    }
+
+    #[test]
+    fn parts_are_known_by_their_ending_and_kept_on_film() {
+        assert_eq!(plan("a -o b.jfilm").unwrap().product, Product::Part);
+        assert_eq!(plan("a -o b --format jfilm").unwrap().product, Product::Part);
+        for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"]
+        {
+            assert!(plan(line).unwrap().needs_film(), "{line}");
+        }
+        assert!(!plan("a").unwrap().needs_film());
+        assert!(refused("a -o b.jfilm --bits 16").contains("--bits"));
+        assert!(refused("a -o - --format jfilm").contains("standard output"));
+        // A picture's crop is all that the picture shows; a part's is where it lies.
+        let crops = |line: &str| plan(line).map(|plan| (plan.settings.crop, plan.cut.crop)).unwrap();
+        let crop = Some(Rect { x: 0, y: 0, width: 16, height: 16 });
+        assert_eq!((crops("a --crop 0,0,16,16"), crops("a --crop 0,0,16,16 -o b.jfilm")), ((crop, None), (None, crop)));
+        let kept = plan("a --checkpoint c.jfilm --frames 0..2").unwrap().shots(2, 24.0).unwrap();
+        assert_eq!(kept[1].checkpoint.as_deref(), Some("c_0001.jfilm"));
     }
 
     #[test]

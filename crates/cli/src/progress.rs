@@ -148,23 +148,35 @@ fn say(event: &serde_json::Value) {
     console::say(&event.to_string());
 }
 
-/// Does `work` while another thread reports on it and cancels it when a signal comes.
-pub fn watched<T>(
-    reporter: &Reporter,
-    interrupts: &Interrupts,
-    control: &Control,
-    samples: u64,
-    work: impl FnOnce() -> T,
-) -> T {
+/// What is watched, and what may end it.
+pub struct Watch<'w> {
+    /// Where progress goes.
+    pub reporter: &'w Reporter,
+    /// Signals that cancel it.
+    pub interrupts: &'w Interrupts,
+    /// The render.
+    pub control: &'w Control,
+    /// Samples that it is to take, over all pixels.
+    pub samples: u64,
+    /// How long it may take before it is asked to finish.
+    pub time: Option<Duration>,
+}
+
+/// Does `work` while another thread reports on it, cancels it when a signal comes and ends it when its time is over.
+pub fn watched<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
     std::thread::scope(|scope| {
         let (running, ended) = mpsc::channel::<()>();
         scope.spawn(move || {
             let start = Instant::now();
             let mut ticks = 0;
+            let Watch { reporter, interrupts, control, samples, time } = *watch;
             while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
                 ticks += 1;
                 if interrupts.caught().is_some() {
                     control.cancel();
+                }
+                if time.is_some_and(|time| start.elapsed() >= time) {
+                    control.finish();
                 }
                 if ticks % reporter.ticks() == 0 {
                     reporter.report(&Look::at(control, samples, start));

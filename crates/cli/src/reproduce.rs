@@ -2,18 +2,28 @@
 //! that equal pictures are equal files.
 
 use crate::plan::{Moments, Plan, Shot};
-use juggler::Settings;
 use juggler::imaging::{Options, SampleDepth};
 use juggler::tracer::film::Rect;
+use juggler::{Limit, Settings};
 use std::fmt::Display;
+
+/// In a command, the file that carries it.
+pub const THIS_FILE: &str = "{this file}";
+/// The text of a picture that says how many samples each of its tiles got.
+pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 
 /// The shortest command line that renders this picture again.
 pub fn command(plan: &Plan, shot: &Shot) -> String {
-    let Settings { size, samples, integrator, max_depth, camera, seed, crop, curve, exposure_stops } = &plan.settings;
-    let Options { png_16_bit, jpeg_quality, exr_depth, .. } = plan.encoding.options;
+    let Settings { size, samples, limit, integrator, max_depth, camera, seed, crop, curve, exposure_stops } =
+        &plan.settings;
+    let Options { png_16_bit, jpeg_quality, exr_depth, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
     words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
-    words.flag("--samples", *samples);
+    match limit {
+        Limit::Time { .. } => words.flag("--samples-from", Some(THIS_FILE)),
+        Limit::Samples | Limit::Noise(_) => words.flag("--samples", *samples),
+    }
+    words.flag("--noise", if let Limit::Noise(level) = limit { Some(level) } else { None });
     words.flag("--integrator", integrator.as_deref().map(quoted));
     words.flag("--max-depth", *max_depth);
     words.flag("--camera", camera.as_deref().map(quoted));

@@ -18,7 +18,7 @@ pub struct Stats<'s> {
     geometry: Geometry,
     memory: Memory,
     film: Film<'s>,
-    fingerprint: &'s str,
+    fingerprint: String,
 }
 
 /// How long each part took.
@@ -102,7 +102,7 @@ impl<'s> Stats<'s> {
                 bvh_bytes: geometry.bvh_bytes,
             },
             film: Film { mean: film.mean, hash: &film.hash },
-            fingerprint: picture.fingerprint(),
+            fingerprint: picture.fingerprint().hash(),
         }
     }
 

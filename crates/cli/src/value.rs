@@ -1,9 +1,12 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
-use juggler::tracer::film::Rect;
+use juggler::tracer::film::{BLOCK, Rect};
+use std::ops::Range;
 
 /// Largest width and height.
 const MAX_EDGE: u32 = 65_536;
+/// Most samples of a pixel.
+const MAX_SAMPLES: u32 = 16_777_216;
 
 /// `640x360`: width and height in pixels.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
@@ -68,6 +71,60 @@ pub fn memory(text: &str) -> Result<u64, String> {
     let number: f64 = number.trim().parse().map_err(|_| wrong())?;
     let bytes = number * 1024_f64.powi(power as i32);
     if bytes >= 1.0 && bytes < u64::MAX as f64 { Ok(bytes as u64) } else { Err(wrong()) }
+}
+
+/// Which part of how many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Counted from 0; `None` when a cluster says it.
+    pub index: Option<u32>,
+    /// How many parts, at least 1.
+    pub count: u32,
+}
+
+/// Most parts of a picture.
+const MAX_SHARDS: u32 = 1_000_000;
+
+/// `3/40` or `auto/40`.
+pub fn shard(text: &str) -> Result<Shard, String> {
+    let wrong = || "a shard is INDEX/COUNT, counted from 0, such as 3/40, or auto/40".to_owned();
+    let (index, count) = text.split_once('/').ok_or_else(wrong)?;
+    let count = count.parse().ok().filter(|count| (1..=MAX_SHARDS).contains(count)).ok_or_else(wrong)?;
+    let index = match index {
+        "auto" => None,
+        index => Some(index.parse::<u32>().map_err(|_| wrong())?),
+    };
+    match index {
+        Some(index) if index >= count => {
+            Err(format!("there is no shard {index} of {count}: they are 0 to {}", count - 1))
+        }
+        _ => Ok(Shard { index, count }),
+    }
+}
+
+/// `16..64`: samples of a pixel, in whole blocks.
+pub fn samples(text: &str) -> Result<Range<u32>, String> {
+    let wrong = || format!("a range of samples is FIRST..END without the end, in multiples of {BLOCK}, such as 16..64");
+    let (first, end) = text.split_once("..").ok_or_else(wrong)?;
+    let (first, end) = (first.parse::<u32>().map_err(|_| wrong())?, end.parse::<u32>().map_err(|_| wrong())?);
+    let whole = first.is_multiple_of(BLOCK) && end.is_multiple_of(BLOCK) && first < end && end <= MAX_SAMPLES;
+    if whole { Ok(first..end) } else { Err(wrong()) }
+}
+
+/// A relative error, such as 0.02.
+pub fn noise(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
+        _ => Err("a level of noise is a relative error between 0 and 1, such as 0.02".into()),
+    }
+}
+
+/// Seconds between two checkpoints.
+pub fn pause(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.001..=1e6).contains(&seconds) => Ok(seconds),
+        _ => Err("a pause is a number of seconds from 0.001 on, such as 60".into()),
+    }
 }
 
 /// A finite number of seconds, not before the start.

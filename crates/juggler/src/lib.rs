@@ -23,14 +23,17 @@
 
 mod error;
 mod kinds;
+mod part;
 mod picture;
 pub mod prelude;
 mod settings;
 
 pub use error::Error;
+pub use juggler_film as film;
 pub use juggler_imaging as imaging;
 pub use juggler_math as math;
 pub use juggler_scene as scene;
 pub use juggler_tracer as tracer;
+pub use part::Origin;
 pub use picture::{Outcome, Picture, render, render_to_file};
-pub use settings::Settings;
+pub use settings::{Limit, Settings};

@@ -1,11 +1,11 @@
 //! One picture, from the scene to the file: what the program, Rust and all other users share.
 
-use crate::{Error, Settings};
+use crate::{Error, Limit, Settings};
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
-use juggler_scene::{Compiled, Scene};
+use juggler_scene::{Compiled, Fingerprint, Scene};
 use juggler_tracer::camera::Projection;
-use juggler_tracer::film::{Digest, Rect, Summary};
+use juggler_tracer::film::{Digest, Filter, Rect, Summary};
 use juggler_tracer::render::{self, Control, Job, Rays, Scheduler, Stopped};
 use juggler_tracer::world::World;
 use std::path::Path;
@@ -14,13 +14,17 @@ use std::time::{Duration, Instant};
 /// Memory of a thread's queues of rays.
 const THREAD_BYTES: u64 = 8 << 20;
 
+/// The program as files name it.
+pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
+
 /// A scene compiled for one picture: every number is settled.
 pub struct Picture {
     compiled: Compiled,
     projection: Projection,
     region: Rect,
     tone: Tone,
-    fingerprint: String,
+    limit: Limit,
+    fingerprint: Fingerprint,
 }
 
 /// What is to be known about a render besides its pixels.
@@ -45,8 +49,10 @@ impl Picture {
         let compiled = scene.compile()?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
-        let tone = scene.description.tone.clone();
-        Ok(Self { projection, region, tone, fingerprint: scene.fingerprint(), compiled })
+        let (tone, limit, fingerprint) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
+        let mut picture = Self { projection, region, tone, limit, fingerprint, compiled };
+        picture.complete_fingerprint();
+        Ok(picture)
     }
 
     /// Width and height of what is rendered: of the crop when there is one.
@@ -74,19 +80,43 @@ impl Picture {
         &self.compiled
     }
 
-    /// A hash of everything that decides the pixels.
-    pub fn fingerprint(&self) -> &str {
+    /// Everything that decides the pixels. Pictures with the same can be extended and joined.
+    pub fn fingerprint(&self) -> &Fingerprint {
         &self.fingerprint
+    }
+
+    /// The scene's fingerprint says nothing of the program, nor of patterns that follow from the number of samples.
+    fn complete_fingerprint(&mut self) {
+        let Job { pattern, filter, samples, .. } = self.job();
+        let grid =
+            if let Filter::Juggler(side) = filter { format!(", filter for {side} x {side}") } else { String::new() };
+        let single = if samples == 1 { ", one through the centre" } else { "" };
+        self.fingerprint.insert("juggler", env!("CARGO_PKG_VERSION"));
+        self.fingerprint.insert("pattern of samples", &format!("{pattern:?}{grid}{single}"));
+    }
+
+    /// What ends it.
+    pub fn limit(&self) -> &Limit {
+        &self.limit
+    }
+
+    /// The pixels that are rendered.
+    pub fn region(&self) -> Rect {
+        self.region
+    }
+
+    /// From linear light to what files keep.
+    pub fn tone(&self) -> &Tone {
+        &self.tone
     }
 
     /// The head of its file; the texts say which program made it, and the fingerprint, seed and samples.
     pub fn header(&self, options: Options) -> Header {
         let [width, height] = self.size();
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
-        let software = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
         let metadata = vec![
-            text("Software", software),
-            text("Fingerprint", &self.fingerprint),
+            text("Software", SOFTWARE),
+            text("Fingerprint", &self.fingerprint.hash()),
             text("Seed", &self.compiled.settings.seed.to_string()),
             text("Samples", &self.samples().to_string()),
         ];
@@ -104,13 +134,14 @@ impl Picture {
     /// The engine's view of it.
     pub fn job(&self) -> Job<'_> {
         let settings = &self.compiled.settings;
+        let samples = self.limit.spread_over(settings.samples);
         Job {
             world: &self.compiled.world,
             camera: &self.projection,
             integrator: &*settings.integrator,
-            filter: settings.filter.filter(settings.samples),
-            pattern: settings.sampler.pattern(settings.samples),
-            samples: settings.samples,
+            filter: settings.filter.filter(samples),
+            pattern: settings.sampler.pattern(samples),
+            samples,
             seed: settings.seed,
         }
     }

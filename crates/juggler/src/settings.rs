@@ -4,16 +4,65 @@ use crate::Error;
 use crate::kinds::{by_name, check_name};
 use juggler_scene::Scene;
 use juggler_scene::description::CameraName;
-use juggler_tracer::film::Rect;
+use juggler_tracer::film::{BLOCK, Rect};
 use juggler_tracer::integrator::AnyIntegrator;
+use juggler_tracer::render::Stop;
+
+/// Most samples of a pixel when the noise stays and nobody says.
+const MOST_FOR_NOISE: u32 = 1 << 16;
+/// Most samples of a pixel in any case.
+const MOST: u32 = 1 << 24;
+
+/// What ends a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Limit {
+    /// When all pixels have their samples.
+    #[default]
+    Samples,
+    /// When the relative error of each block of 16 × 16 pixels is at most this: the root mean square over its pixels,
+    /// estimated from the picture's own samples (see [`Stop::Noise`]).
+    Noise(f32),
+    /// When somebody calls [`Control::finish`](juggler_tracer::render::Control::finish), which is to be after some time.
+    Time {
+        /// How long it is to take.
+        seconds: f64,
+    },
+}
+
+impl Limit {
+    /// When a tile has enough.
+    pub fn stop(&self) -> Stop {
+        match self {
+            Self::Noise(level) => Stop::Noise(*level),
+            Self::Samples | Self::Time { .. } => Stop::Samples,
+        }
+    }
+
+    /// The most samples of a pixel when nobody says.
+    fn most(&self, of_scene: u32) -> u32 {
+        match self {
+            Self::Samples => of_scene,
+            Self::Noise(_) => MOST_FOR_NOISE,
+            Self::Time { .. } => MOST,
+        }
+    }
+
+    /// The number of samples by which samplers choose their pattern. Where the end is open, each block is to be well
+    /// spread.
+    pub(crate) fn spread_over(&self, samples: u32) -> u32 {
+        if *self == Self::Samples { samples } else { BLOCK }
+    }
+}
 
 /// Wishes that come before what the scene file says. What is `None` stays as the scene has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Width and height in pixels.
     pub size: Option<[u32; 2]>,
-    /// Samples per pixel.
+    /// Samples per pixel; the most of them when the picture ends by noise or time.
     pub samples: Option<u32>,
+    /// What ends it.
+    pub limit: Limit,
     /// Name of an integrator. The scene's own numbers are kept when it is the scene's own integrator.
     pub integrator: Option<String>,
     /// How often a path may be mirrored or refracted.
@@ -42,7 +91,7 @@ impl Settings {
         }
         let render = &mut description.render;
         render.size = self.size.unwrap_or(render.size);
-        render.samples = self.samples.unwrap_or(render.samples);
+        render.samples = self.samples.unwrap_or(self.limit.most(render.samples));
         render.seed = self.seed.unwrap_or(render.seed);
         if let Some(name) = self.integrator.as_deref().filter(|name| *name != render.integrator.name()) {
             render.integrator = by_name("integrator", name)?;

@@ -1,5 +1,5 @@
-//! A hash of everything that decides a scene's pixels: two scenes with the same fingerprint give the same picture
-//! for the same samples.
+//! What decides a scene's pixels, by name: two scenes with the same fingerprint give the same picture for the same
+//! samples, and of two that differ it says in what.
 //!
 //! It covers the resolved description and the contents of mesh files. It does not cover titles, how long the
 //! animation is, the tone curve (pixels are linear), and how many samples are taken: a picture that is extended to
@@ -9,30 +9,84 @@ use crate::compile::Files;
 use crate::description::{Description, Object};
 use crate::path::Path;
 use juggler_tracer::shape::AnyShape;
-use std::collections::BTreeSet;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 /// Changes when the same description comes to mean another picture.
-const MEANING: &[u8] = b"juggler scene 1\n";
+const MEANING: &[u8] = b"juggler scene 2\n";
 
-/// The fingerprint as 64 hexadecimal digits.
-pub fn of(scene: &Description, files: &Files<'_>) -> String {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(MEANING);
-    let mut bare = scene.clone();
-    bare.title.clear();
-    bare.description.clear();
-    bare.animation = Default::default();
-    bare.tone = Default::default();
-    bare.render.samples = 0;
-    // Writing into a hasher cannot fail, and descriptions are plain data.
-    if let Err(error) = serde_json::to_writer(&mut hasher, &bare) {
-        hasher.update(error.to_string().as_bytes());
+/// Named parts of everything that decides the pixels: settings as they are, the rest by its hash.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Fingerprint(BTreeMap<String, String>);
+
+impl Fingerprint {
+    /// Of a description and the files it names.
+    pub(crate) fn of(scene: &Description, files: &Files<'_>) -> Self {
+        let mut bare = scene.clone();
+        bare.title.clear();
+        bare.description.clear();
+        bare.animation = Default::default();
+        bare.tone = Default::default();
+        bare.render.samples = 0;
+        let mut parts = Self::default();
+        // Descriptions are plain data: they can be written.
+        let json = serde_json::to_value(&bare).unwrap_or_default();
+        for (key, value) in json.as_object().into_iter().flatten() {
+            match value.as_object() {
+                Some(settings) if key == "render" => settings.iter().for_each(|(key, value)| match value.as_str() {
+                    Some(text) => parts.insert(&format!("render.{key}"), text),
+                    None => parts.insert(&format!("render.{key}"), &value.to_string()),
+                }),
+                _ if is_nothing(value) => {}
+                _ => parts.insert(key, &digest(value.to_string().as_bytes())),
+            }
+        }
+        for file in mesh_files(scene, files) {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            parts.insert(&format!("file {name}"), &digest(&files.library.digest(&file)));
+        }
+        parts
     }
-    for file in mesh_files(scene, files) {
-        hasher.update(&files.library.digest(&file));
+
+    /// Adds what decides the pixels too. Of a name that is there already, both values count.
+    pub fn insert(&mut self, name: &str, value: &str) {
+        let part = self.0.entry(name.to_owned()).or_default();
+        if !part.is_empty() {
+            part.push(' ');
+        }
+        part.push_str(value);
     }
-    hasher.finalize().to_hex().to_string()
+
+    /// The parts by name.
+    pub fn parts(&self) -> &BTreeMap<String, String> {
+        &self.0
+    }
+
+    /// All of it as 64 hexadecimal digits.
+    pub fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(MEANING);
+        for (name, value) in &self.0 {
+            hasher.update(format!("{name:?} {value:?}\n").as_bytes());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+}
+
+fn is_nothing(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::Array(items) => items.is_empty(),
+        Value::Object(items) => items.is_empty(),
+        _ => false,
+    }
+}
+
+fn digest(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex()[..32].to_owned()
 }
 
 fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {

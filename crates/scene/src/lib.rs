@@ -26,6 +26,7 @@ pub mod validate;
 
 pub use compile::Compiled;
 pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};
+pub use fingerprint::Fingerprint;
 pub use presets::{BuiltIn, built_in_scenes};
 pub use report::{Problem, Problems, Severity};
 pub use scene::{Scene, SceneError};

@@ -3,9 +3,10 @@
 use crate::compile::{Assembly, Compiled, Files, Library};
 use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, read_text};
+use crate::fingerprint::Fingerprint;
 use crate::report::{Finding, Problems, plain_io};
 use crate::validate::validate;
-use crate::{animate, fingerprint, schema};
+use crate::{animate, schema};
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
@@ -146,9 +147,9 @@ impl Scene {
         Ok(assembly.compile(self.description.render.clone(), problems))
     }
 
-    /// A hash of everything that decides the pixels, however many samples are taken.
-    pub fn fingerprint(&self) -> String {
-        fingerprint::of(&self.description, &self.files())
+    /// Everything that decides the pixels, however many samples are taken.
+    pub fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::of(&self.description, &self.files())
     }
 
     /// The scene as a file, expressions resolved.

@@ -2,6 +2,7 @@
 
 use super::tile::Tile;
 use super::{Layout, TileError};
+use juggler_math::Rgb;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -15,7 +16,7 @@ pub struct Film {
 #[derive(Debug)]
 struct Cell {
     number: u64,
-    wanted: Range<u32>,
+    wanted: Vec<Range<u32>>,
     tile: Mutex<Tile>,
 }
 
@@ -25,13 +26,17 @@ impl Film {
         Self::of(layout, (0..layout.tiles()).map(|number| (number, wanted.clone())))
     }
 
-    /// Some of the tiles, by number, each once, with the samples that they are to get. Numbers beyond the last
-    /// tile are left out.
+    /// Some of the tiles, by number, with the samples that they are to get; a number may come again with others.
+    /// Numbers beyond the last tile are left out.
     pub fn of(layout: Layout, shares: impl IntoIterator<Item = (u64, Range<u32>)>) -> Self {
-        let cell = |(number, wanted)| Some(Cell { number, wanted, tile: Mutex::new(Tile::new(layout.tile(number)?)) });
-        let mut cells: Vec<Cell> = shares.into_iter().filter_map(cell).collect();
-        cells.sort_by_key(|cell| cell.number);
-        cells.dedup_by_key(|cell| cell.number);
+        let mut shares: Vec<(u64, Range<u32>)> = shares.into_iter().collect();
+        shares.sort_by_key(|(number, wanted)| (*number, wanted.start));
+        let cell = |shares: &[(u64, Range<u32>)]| {
+            let (number, _) = *shares.first()?;
+            let wanted = joined(shares.iter().map(|(_, wanted)| wanted.clone()));
+            Some(Cell { number, wanted, tile: Mutex::new(Tile::new(layout.tile(number)?)) })
+        };
+        let cells = shares.chunk_by(|a, b| a.0 == b.0).filter_map(cell).collect();
         Self { layout, cells }
     }
 
@@ -58,8 +63,26 @@ impl Film {
     }
 
     /// The samples that the tile at `place` is to get.
-    pub fn wanted(&self, place: usize) -> Range<u32> {
-        self.cells.get(place).map_or(0..0, |cell| cell.wanted.clone())
+    pub fn wanted(&self, place: usize) -> &[Range<u32>] {
+        self.cells.get(place).map_or(&[], |cell| &cell.wanted)
+    }
+
+    /// The samples that tile `number` is to get; none when it is not held.
+    pub fn wanted_of(&self, number: u64) -> &[Range<u32>] {
+        self.place(number).map_or(&[], |place| self.wanted(place))
+    }
+
+    /// Samples that all tiles together are to get, over all pixels.
+    pub fn goal(&self) -> u64 {
+        let each = |cell: &Cell| {
+            let area = self.layout.tile(cell.number).map_or(0, |tile| tile.area());
+            area * cell.wanted.iter().map(|wanted| wanted.len() as u64).sum::<u64>()
+        };
+        self.cells.iter().map(each).fold(0, u64::saturating_add)
+    }
+
+    fn place(&self, number: u64) -> Option<usize> {
+        self.cells.binary_search_by_key(&number, |cell| cell.number).ok()
     }
 
     /// The tile at `place`, for as long as nobody else needs it.
@@ -76,8 +99,8 @@ impl Film {
 
     /// Adds what another film holds of tile `number`; `false` when the tile is not held here.
     pub fn add(&self, number: u64, tile: Tile) -> Result<bool, TileError> {
-        let Ok(place) = self.cells.binary_search_by_key(&number, |cell| cell.number) else { return Ok(false) };
-        self.tile(place).map_or(Ok(false), |mut held| held.merge(tile).map(|()| true))
+        let held = self.place(number).and_then(|place| self.tile(place));
+        held.map_or(Ok(false), |mut held| held.merge(tile).map(|()| true))
     }
 
     /// Samples that are there, over all pixels.
@@ -90,4 +113,30 @@ impl Film {
     pub fn counts(&self) -> Vec<u32> {
         (0..self.cells.len()).map(|place| self.tile(place).map_or(0, |tile| tile.count())).collect()
     }
+
+    /// Hands the finished pixels to `rows`, whole rows from top to bottom, a band at a time. Tiles that are not held
+    /// are black.
+    pub fn develop<E>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<(), E> {
+        for (row, band) in (0..).zip(self.layout.bands()) {
+            let mut pixels = vec![Rgb::BLACK; band.area() as usize];
+            for number in self.layout.in_band(row) {
+                if let Some(tile) = self.place(number).and_then(|place| self.tile(place)) {
+                    tile.copy_to(&band, &mut pixels);
+                }
+            }
+            rows(&pixels)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ranges in order, those that touch as one.
+fn joined(ranges: impl Iterator<Item = Range<u32>>) -> Vec<Range<u32>> {
+    ranges.fold(Vec::new(), |mut all: Vec<Range<u32>>, range| {
+        match all.last_mut() {
+            Some(last) if range.start <= last.end => last.end = last.end.max(range.end),
+            _ => all.push(range),
+        }
+        all
+    })
 }

@@ -84,4 +84,17 @@ impl Layout {
         let (x, y) = (cell(self.region.x, column)?, cell(self.region.y, row)?);
         Some(self.region.intersection(&Rect { x, y, width: TILE, height: TILE }))
     }
+
+    /// The region in bands, a row of tiles each, from the top.
+    pub fn bands(&self) -> impl Iterator<Item = Rect> {
+        let Rect { x, width, .. } = self.region;
+        let first = (0..u64::from(self.rows())).filter_map(|row| self.tile(row * u64::from(self.columns())));
+        first.map(move |tile| Rect { x, width, ..tile })
+    }
+
+    /// The numbers of the tiles of band `row`.
+    pub fn in_band(&self, row: u64) -> std::ops::Range<u64> {
+        let columns = u64::from(self.columns());
+        row * columns..(row + 1) * columns
+    }
 }

@@ -9,13 +9,17 @@ use std::ops::Range;
 /// the way down, and an open block.
 pub(super) const MAX_RUNS: usize = 64;
 
+/// What a difference counts one join further down. Joins double a level, so each level counts half of the one above.
+const DEEPER: f64 = 0.25;
+
 /// What is known of one pixel's samples of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {
     /// The sum of the samples, linear RGB.
     pub total: [f64; 3],
-    /// How much the sums of the run's blocks differ: the sum of squared deviations from their mean (Chan, Golub,
-    /// LeVeque 1979, whose joining does not cancel).
+    /// How much the sums of the run's blocks differ: the squared deviations between the two sides of each join, as
+    /// Chan, Golub and LeVeque (1979) add them up, but those of deeper joins count less, by [`DEEPER`] a level. Well
+    /// spread samples make long runs differ less than short ones; it is the long ones that tell how good the mean is.
     pub spread: [f32; 3],
 }
 
@@ -33,10 +37,20 @@ impl Sum {
             sum.total[i] = self.total[i] + next.total[i];
             let apart = next.total[i] / b.max(1.0) - self.total[i] / a.max(1.0);
             let between = apart * apart * (a * b / (a + b).max(1.0));
-            sum.spread[i] = self.spread[i] + next.spread[i] + between as f32;
+            sum.spread[i] = (self.spread[i] + next.spread[i]) * DEEPER as f32 + between as f32;
         }
         sum
     }
+}
+
+/// By what a run's spread must be divided to give the variance of a block, if all blocks were independent.
+pub(super) fn weight(level: u32) -> f64 {
+    (0..level).fold(0.0, |below, _| joined_weight(below, below))
+}
+
+/// [`weight`] of two runs that are joined.
+pub(super) fn joined_weight(a: f64, b: f64) -> f64 {
+    1.0 + DEEPER * (a + b)
 }
 
 /// The blocks of a run are as many as a power of two, and their number divides the number of the first: the runs

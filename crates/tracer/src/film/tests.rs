@@ -117,15 +117,27 @@ fn what_is_no_run_is_refused() {
 
 #[test]
 fn statistics_are_those_of_the_blocks() {
-    let blocks = 23;
-    let tile = tile(0..blocks * BLOCK + 3, None);
-    let means: Vec<f64> = (0..blocks).map(|number| block(1, number, u32::MAX)[2] / 16.0).collect();
-    let mean = means.iter().sum::<f64>() / f64::from(blocks);
-    let squares = means.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
-    let variance = squares / f64::from(blocks * (blocks - 1));
-    let found = tile.statistics(1);
-    assert!(found.blocks == blocks && (found.mean[2] / mean - 1.0).abs() < 1e-12, "{found:?}");
-    assert!((found.variance[2] / variance - 1.0).abs() < 1e-5, "{} for {variance}", found.variance[2]);
+    // Independent samples, even over [0, 1]: the variance of the mean of n is 1 / 12 n.
+    for blocks in [2, 3, 4, 7, 16, 23] {
+        let (mut mean, mut variance) = (0.0, 0.0);
+        for seed in 0..4000 {
+            let unit = |i: u32| hash::unit_f32(hash::combine(hash::combine(seed, i), 7));
+            let samples: Vec<Rgb> = (0..blocks * BLOCK + 3).map(|i| Rgb::splat(unit(i))).collect();
+            let mut accumulator = Accumulator::default();
+            accumulator.add(&samples);
+            let mut tile = Tile::new(Rect { width: 1, ..PIXELS });
+            for (samples, sum) in runs(0..samples.len() as u32).into_iter().zip(accumulator.sums()) {
+                tile.add(Run { samples, sums: vec![sum] }).unwrap();
+            }
+            let found = tile.statistics(0);
+            assert_eq!(found.blocks, blocks);
+            mean += found.mean[1] / 4000.0;
+            variance += found.variance[1] / 4000.0;
+        }
+        let expected = 1.0 / (12.0 * f64::from(blocks * BLOCK));
+        assert!((mean - 0.5).abs() < 2e-3, "{blocks} blocks: {mean}");
+        assert!((variance / expected - 1.0).abs() < 0.08, "{blocks} blocks: {variance} for {expected}");
+    }
     assert_eq!(Tile::new(PIXELS).statistics(0), Statistics::default());
 }
 

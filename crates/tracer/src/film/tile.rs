@@ -1,6 +1,6 @@
 //! A rectangle of pixels with the samples that are there so far.
 
-use super::sum::{Sum, is_open, level};
+use super::sum::{Sum, is_open, joined_weight, level, weight};
 use super::{BLOCK, Rect};
 use juggler_math::Rgb;
 use std::ops::Range;
@@ -151,6 +151,22 @@ impl Tile {
         (0..self.pixels.area() as usize).map(|pixel| mean(self.total(pixel))).collect()
     }
 
+    /// Writes the finished pixels to their places in a `band` that holds the tile; its pixels row by row.
+    pub fn copy_to(&self, band: &Rect, pixels: &mut [Rgb]) {
+        let (means, width) = (self.means(), self.pixels.width as usize);
+        let place = |row: usize| {
+            let row = (self.pixels.y as usize + row).checked_sub(band.y as usize)?;
+            Some(row * band.width as usize + self.pixels.x.checked_sub(band.x)? as usize)
+        };
+        for (row, line) in means.chunks_exact(width.max(1)).enumerate() {
+            if let Some(start) = place(row)
+                && let Some(pixels) = pixels.get_mut(start..start + width)
+            {
+                pixels.copy_from_slice(line);
+            }
+        }
+    }
+
     fn total(&self, pixel: usize) -> [f64; 3] {
         self.runs.iter().filter_map(|run| run.sums.get(pixel)).fold([0.0; 3], |total, sum| {
             let mut total = total;
@@ -181,16 +197,17 @@ impl Tile {
     /// Mean and its variance, as the blocks of samples give it, of one pixel; no variance of fewer than two blocks.
     /// Blocks that are not whole are left out.
     pub fn statistics(&self, pixel: usize) -> Statistics {
-        let mut sum = Sum::default();
-        let mut blocks = 0;
-        for run in self.runs.iter().filter(|run| !is_open(&run.samples)) {
-            let more = (run.samples.end - run.samples.start) / BLOCK;
-            if let Some(next) = run.sums.get(pixel) {
-                sum = if blocks == 0 { *next } else { sum.joined(next, [blocks, more]) };
-                blocks += more;
-            }
+        let (mut sum, mut blocks, mut divisor) = (Sum::default(), 0, 0.0);
+        for run in &self.runs {
+            let (Some(level), Some(next)) = (level(&run.samples), run.sums.get(pixel)) else { continue };
+            let more = 1 << level;
+            (sum, divisor) = match blocks {
+                0 => (*next, weight(level)),
+                _ => (sum.joined(next, [blocks, more]), joined_weight(divisor, weight(level))),
+            };
+            blocks += more;
         }
-        Statistics::of(&sum, blocks)
+        Statistics::of(&sum, blocks, divisor)
     }
 }
 
@@ -206,12 +223,12 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    fn of(sum: &Sum, blocks: u32) -> Self {
+    fn of(sum: &Sum, blocks: u32, divisor: f64) -> Self {
         let (count, size) = (f64::from(blocks.max(1)), f64::from(BLOCK));
-        let freedom = count * f64::from(blocks.saturating_sub(1).max(1));
+        let divisor = if divisor > 0.0 { divisor } else { 1.0 };
         Self {
             mean: sum.total.map(|total| total / (count * size)),
-            variance: sum.spread.map(|spread| f64::from(spread) / (freedom * size * size)),
+            variance: sum.spread.map(|spread| f64::from(spread) / (divisor * count * size * size)),
             blocks,
         }
     }

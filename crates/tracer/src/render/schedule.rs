@@ -2,7 +2,7 @@
 
 use super::wavefront::Engine;
 use super::{Control, Job, Work};
-use crate::film::{Rect, Tile};
+use crate::film::Rect;
 use juggler_math::Rgb;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -50,7 +50,7 @@ pub fn render<E: From<Stopped>>(
             let recycled = lock(&engines).pop();
             let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
             if let Ok(tile) = engine.render(&Work::first(pixels, job.samples), control) {
-                copy(&tile, &band, &mut lock(&film));
+                tile.copy_to(&band, &mut lock(&film));
             }
             lock(&engines).push(engine);
         };
@@ -75,17 +75,6 @@ pub fn band_bytes(region: Rect) -> u64 {
 /// A poisoned lock only says that another thread panicked, which rayon passes on anyway.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
-/// Copies a tile's finished pixels to their places in a band of rows.
-pub fn copy(tile: &Tile, band: &Rect, film: &mut [Rgb]) {
-    let (pixels, place) = (tile.means(), tile.pixels());
-    let width = place.width as usize;
-    for (row, line) in pixels.chunks_exact(width.max(1)).enumerate() {
-        let start = (place.y - band.y) as usize + row;
-        let start = start * band.width as usize + (place.x - band.x) as usize;
-        film[start..start + width].copy_from_slice(line);
-    }
 }
 
 /// Cuts a region into bands of whole rows that fit in memory.

@@ -1,18 +1,21 @@
 //! `juggler render`: one picture, or the pictures of an animation.
 
+mod film;
+
 use crate::args::RenderArgs;
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{amount, bytes, counted, duration};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{Plan, Shot};
-use crate::progress::{Reporter, watched};
+use crate::plan::{Encoding, Plan, Product, Shot};
+use crate::progress::{Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
-use juggler::imaging::{self, Header, RowWriter};
+use juggler::imaging::{self, Format, Header, RowWriter};
 use juggler::scene::Scene;
+use juggler::tracer::film::Film;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
 use std::path::Path;
@@ -25,6 +28,9 @@ Examples:
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
   juggler render juggler --frames 0..30 -o 'frame_####.png'
   juggler render scene.json -o - | display                   the picture to another program
+  juggler render scene.json --noise 0.02                     until it is good enough
+  juggler render scene.json --checkpoint scene.jfilm         the same command again goes on where it ended
+  juggler render scene.json --shard 3/40 -o part3.jfilm      a fortieth of it; `juggler merge` joins them
   juggler info scene.png                                     how that picture was made
 
 Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed, 130 or 143 interrupted.";
@@ -86,14 +92,19 @@ impl Session {
         let picture = Picture::new(scene, &self.plan.settings)?;
         self.warn(&picture);
         let take = Take { shot, picture: &picture, load, build: built.elapsed(), start };
-        let mut header = picture.header(self.plan.encoding.options);
+        let mut header = picture.header(self.plan.options());
         header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, shot)));
         self.check_memory(&picture, &header)?;
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,
             none => none.insert(Interrupts::watch()?),
         };
-        let outcome = self.render(&take, &header, interrupts)?;
+        let outcome = match self.plan.product {
+            Product::Picture(encoding) if !self.plan.needs_film() => {
+                self.render(&take, encoding.format, &header, interrupts)?
+            }
+            _ => film::render(self, &take, header, interrupts)?,
+        };
         self.report(&take, &outcome)
     }
 
@@ -105,38 +116,47 @@ impl Session {
     }
 
     fn check_memory(&self, picture: &Picture, header: &Header) -> Result<(), Failure> {
-        let Plan { encoding, threads, output, .. } = &self.plan;
-        encoding.format.check_dimensions(header.width, header.height)?;
-        let seekable = output != STANDARD_OUTPUT;
-        let render = picture.memory_needed(*threads);
-        let file = encoding.format.memory_needed(header, seekable);
-        let needed = render.saturating_add(file);
+        let Plan { threads, output, .. } = &self.plan;
+        let mut parts = vec![("scene and rays".to_owned(), picture.memory_needed(*threads))];
+        if let Product::Picture(Encoding { format, .. }) = self.plan.product {
+            format.check_dimensions(header.width, header.height)?;
+            parts.push((format!("the {format} file"), format.memory_needed(header, output != STANDARD_OUTPUT)));
+        }
+        if self.plan.needs_film() {
+            parts.push(("the film".to_owned(), Film::bytes(&picture.layout())));
+        }
+        let needed = parts.iter().fold(0_u64, |sum, (_, part)| sum.saturating_add(*part));
         let Some(most) = self.plan.max_memory.filter(|most| needed > *most) else { return Ok(()) };
+        let each: Vec<String> = parts.iter().map(|(name, part)| format!("{} for {name}", bytes(*part))).collect();
         Err(Failure::Wrong(format!(
-            "the render needs about {} of memory ({} for scene and rays, {} for the {} file), more than --max-memory {}",
+            "the render needs about {} of memory ({}), more than --max-memory {}",
             bytes(needed),
-            bytes(render),
-            bytes(file),
-            encoding.format,
+            each.join(", "),
             bytes(most)
         )))
     }
 
-    fn render(&self, take: &Take, header: &Header, interrupts: &Interrupts) -> Result<Outcome, Failure> {
+    /// Renders row by row.
+    fn render(
+        &self,
+        take: &Take,
+        format: Format,
+        header: &Header,
+        interrupts: &Interrupts,
+    ) -> Result<Outcome, Failure> {
         let Take { shot, picture, .. } = take;
         let control = Control::default();
-        let writer = self.writer(&shot.output, header)?;
+        let writer = self.writer(format, &shot.output, header)?;
         self.reporter.start(&shot.output, picture.size(), picture.samples());
-        let work = || picture.write(writer, &control);
-        let result = watched(&self.reporter, interrupts, &control, picture.total_samples(), work);
-        result.map_err(|error| {
+        let samples = picture.total_samples();
+        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, samples, time: None };
+        watched(&watch, || picture.write(writer, &control)).map_err(|error| {
             self.reporter.clear();
             interrupts.caught().unwrap_or_else(|| error.into())
         })
     }
 
-    fn writer(&self, output: &str, header: &Header) -> Result<Box<dyn RowWriter>, Failure> {
-        let format = self.plan.encoding.format;
+    fn writer(&self, format: Format, output: &str, header: &Header) -> Result<Box<dyn RowWriter>, Failure> {
         Ok(match output {
             STANDARD_OUTPUT => imaging::to_standard_output(format, header)?,
             file => imaging::create(Path::new(file), format, header)?,

@@ -1,0 +1,189 @@
+//! A picture on a film that is kept: gone on with, ended by noise or time, shared with other machines.
+
+use super::{Session, Take};
+use crate::console;
+use crate::failure::Failure;
+use crate::interrupt::Interrupts;
+use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard};
+use crate::progress::{Watch, watched};
+use crate::reproduce::SAMPLES_PER_TILE;
+use juggler::film::checkpoint::{self, Checkpoint};
+use juggler::film::counts;
+use juggler::film::part::{Description, Part, PartError, Share, write};
+use juggler::film::share::{self, Work};
+use juggler::imaging::{Header, inspect};
+use juggler::tracer::film::{Film, Rect, Summary, TILE};
+use juggler::tracer::render::{Control, Stopped};
+use juggler::{Limit, Origin, Outcome, Picture};
+use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+/// A film on its way to becoming a picture or a part of one.
+struct Exposure<'t> {
+    session: &'t Session,
+    take: &'t Take<'t>,
+    header: Header,
+    film: Film,
+    description: Description,
+}
+
+/// Renders on a film.
+pub fn render(session: &Session, take: &Take, header: Header, interrupts: &Interrupts) -> Result<Outcome, Failure> {
+    let (film, share) = wanted(session, take)?;
+    let command = header.metadata.iter().find(|(key, _)| key == "Command").map(|(_, command)| command.clone());
+    let origin =
+        Origin { scene: session.plan.scene.clone(), frame: take.shot.frame, command: command.unwrap_or_default() };
+    let description = take.picture.description(&origin, &header, share);
+    Exposure { session, take, header, film, description }.run(interrupts)
+}
+
+/// The tiles and samples that are asked for.
+fn wanted(session: &Session, take: &Take) -> Result<(Film, Share), Failure> {
+    let (picture, plan) = (take.picture, &session.plan);
+    let layout = picture.layout();
+    let whole = Share::whole(picture.samples());
+    if let Some(file) = &plan.samples_from {
+        let counts = samples_of(file, picture)?;
+        return Ok((Film::of(layout, (0..).zip(counts.into_iter().map(|count| 0..count))), whole));
+    }
+    let Cut { crop, samples } = &plan.cut;
+    let samples = samples.clone().unwrap_or(whole.samples);
+    if samples.end > picture.samples() {
+        let most = picture.samples();
+        return Err(Failure::Wrong(format!("--sample-range ends at {}; the picture has {most} samples", samples.end)));
+    }
+    if let Some(crop) = crop {
+        check_crop(crop, &picture.region())?;
+    }
+    let Shard { index, count } = take.shot.shard;
+    let work = Work { layout, crop: *crop, samples: samples.clone(), stop: picture.end() };
+    let units = work.share(index, count).into_iter().map(|unit| (unit.tile, unit.samples));
+    Ok((Film::of(layout, units), Share { index, count, samples, crop: *crop }))
+}
+
+/// Parts are cut between tiles only.
+fn check_crop(crop: &Rect, region: &Rect) -> Result<(), Failure> {
+    if crop.intersection(region) != *crop {
+        let (width, height) = (region.width, region.height);
+        return Err(Failure::Wrong(format!("the crop reaches beyond the picture of {width}x{height} pixels")));
+    }
+    match share::whole_tiles(region, crop) {
+        whole if whole == *crop => Ok(()),
+        Rect { x, y, width, height } => Err(Failure::Wrong(format!(
+            "the crop of a part is cut at multiples of {TILE} pixels, such as {x},{y},{width},{height}"
+        ))),
+    }
+}
+
+/// How many samples each tile of a picture or part got.
+fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
+    let (path, tiles) = (Path::new(file), picture.layout().tiles());
+    let other = || Failure::Wrong(format!("`{file}` is of another picture or other settings"));
+    match Part::open(path) {
+        Ok(part) => {
+            let Description { fingerprint, region, .. } = part.description();
+            let same = fingerprint == picture.fingerprint().parts() && *region == picture.region();
+            return if same { Ok(counts::of_part(&part)?) } else { Err(other()) };
+        }
+        Err(PartError::NotAPart { .. }) => {}
+        Err(error) => return Err(error.into()),
+    }
+    let metadata = inspect(path)?.metadata;
+    let text = |key: &str| metadata.iter().find(|(known, _)| known == key).map(|(_, text)| text.as_str());
+    let Some(counts) = text(SAMPLES_PER_TILE) else {
+        return Err(Failure::Wrong(format!("`{file}` does not say how many samples its parts got")));
+    };
+    if text("Fingerprint") != Some(&picture.fingerprint().hash()) {
+        return Err(other());
+    }
+    counts::from_text(counts, tiles).ok_or_else(other)
+}
+
+impl Exposure<'_> {
+    fn run(mut self, interrupts: &Interrupts) -> Result<Outcome, Failure> {
+        let mut kept = self.take.shot.checkpoint.as_deref().map(|file| self.open(file)).transpose()?;
+        let (control, start) = (Control::default(), Instant::now());
+        let result = self.expose(&control, interrupts, kept.as_mut());
+        let render = start.elapsed();
+        self.description.finished = result.is_ok() && self.take.picture.is_finished(&self.film);
+        if let Some(kept) = &mut kept {
+            kept.save(&self.description, &self.film)?;
+        }
+        if result.is_err() {
+            let caught = interrupts.caught();
+            let file = kept.and(self.take.shot.checkpoint.clone());
+            return Err(caught.map_or(Failure::System(Stopped.to_string()), |failure| failure.keeping(file)));
+        }
+        let write = Instant::now();
+        let film = self.write()?;
+        if let Some(kept) = kept {
+            kept.close();
+        }
+        Ok(Outcome { film, rays: control.rays(), render, write: write.elapsed() })
+    }
+
+    /// Opens the checkpoint and takes over what it holds.
+    fn open(&self, file: &str) -> Result<Checkpoint, Failure> {
+        let (kept, found) = Checkpoint::open(Path::new(file))?;
+        if let Some(damage) = found.damage {
+            console::say(&format!("warning: {damage}; going on from the one before it"));
+        }
+        if let Some(part) = found.part {
+            checkpoint::resume(&part, &self.description, &self.film)?;
+        }
+        Ok(kept)
+    }
+
+    fn expose(&self, control: &Control, interrupts: &Interrupts, kept: Option<&mut Checkpoint>) -> Result<(), Stopped> {
+        let Session { plan, reporter } = self.session;
+        let goal = self.film.goal().saturating_sub(self.film.samples());
+        reporter.start(&self.take.shot.output, self.take.picture.size(), self.take.picture.samples());
+        let watch = Watch { reporter, interrupts, control, samples: goal, time: plan.time };
+        let work = || self.take.picture.expose(&self.film, control);
+        let result = watched(&watch, || match (kept, &plan.checkpoint) {
+            (Some(kept), Some(Keeping { every, .. })) => self.keeping(kept, *every, work),
+            _ => work(),
+        });
+        if result.is_err() {
+            reporter.clear();
+        }
+        result
+    }
+
+    /// Does `work` while another thread keeps the film again and again.
+    fn keeping<T>(&self, kept: &mut Checkpoint, every: Duration, work: impl FnOnce() -> T) -> T {
+        std::thread::scope(|scope| {
+            let (running, ended) = mpsc::channel::<()>();
+            scope.spawn(move || {
+                while ended.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
+                    if let Err(error) = kept.save(&self.description, &self.film) {
+                        console::say(&format!("warning: {error}"));
+                    }
+                }
+            });
+            let result = work();
+            drop(running);
+            result
+        })
+    }
+
+    /// Writes the picture or the part.
+    fn write(&mut self) -> Result<Summary, Failure> {
+        let (picture, output) = (self.take.picture, &self.take.shot.output);
+        match self.session.plan.product {
+            Product::Part => {
+                write(Path::new(output), &self.description, self.film.tiles())?;
+                Ok(picture.develop(&self.film, |_| Ok::<(), Failure>(()))?)
+            }
+            Product::Picture(encoding) => {
+                if matches!(picture.limit(), Limit::Time { .. }) {
+                    let counts = counts::to_text(&self.film.counts());
+                    self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));
+                }
+                let writer = self.session.writer(encoding.format, output, &self.header)?;
+                Ok(picture.write_film(&self.film, writer)?)
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Work that is kept while it is done: a film part that is replaced again and again, and beside it the one before,
+//! until the end.
+
+use crate::part::{Description, Part, PartError, Stop, write};
+use juggler_tracer::film::{Film, Tile, TileError};
+use std::ffi::OsString;
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// A checkpoint's file.
+#[derive(Debug)]
+pub struct Checkpoint {
+    path: PathBuf,
+    /// Where the one before is kept.
+    previous: PathBuf,
+    /// Whether the file is good, so that it may become the one before.
+    is_good: bool,
+}
+
+/// What was found when a checkpoint was opened.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// The work so far.
+    pub part: Option<Part>,
+    /// Why that is not the newest, but the one before.
+    pub damage: Option<PartError>,
+}
+
+/// Why a render cannot go on from a part.
+#[derive(Debug, thiserror::Error)]
+pub enum ResumeError {
+    /// Its file cannot be trusted.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// It is of another picture.
+    #[error("{file}: is of another picture: {differences}")]
+    Foreign {
+        /// The file.
+        file: String,
+        /// What differs, with both values.
+        differences: String,
+    },
+    /// It holds more than was asked for, or other samples.
+    #[error("{file}: {what}")]
+    Beyond {
+        /// The file.
+        file: String,
+        /// What.
+        what: String,
+    },
+    /// Its samples do not fit together.
+    #[error("{file}: {error}")]
+    Tile {
+        /// The file.
+        file: String,
+        /// Why.
+        error: TileError,
+    },
+}
+
+impl Checkpoint {
+    /// Looks for work that was kept. A file that is damaged is not used, and the one before it is when there is one;
+    /// an error when there is none.
+    pub fn open(path: &Path) -> Result<(Self, Found), PartError> {
+        let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
+        name.push(".previous");
+        let previous = path.with_file_name(name);
+        let part = trusted(path);
+        let is_good = matches!(part, Ok(Some(_)));
+        let checkpoint = Self { path: path.to_owned(), previous, is_good };
+        let found = match part {
+            Ok(Some(part)) => Found { part: Some(part), damage: None },
+            // Killed between two steps of replacing it, or never written.
+            Ok(None) => Found { part: trusted(&checkpoint.previous)?, damage: None },
+            Err(damage) => match trusted(&checkpoint.previous) {
+                Ok(Some(part)) => Found { part: Some(part), damage: Some(damage) },
+                _ => return Err(damage),
+            },
+        };
+        Ok((checkpoint, found))
+    }
+
+    /// Keeps what a film holds now; it may be exposed meanwhile. Returns how many bytes were written.
+    pub fn save(&mut self, description: &Description, film: &Film) -> Result<u64, PartError> {
+        if self.is_good {
+            // What cannot be linked is replaced all the same, at once and whole.
+            let _ = fs::remove_file(&self.previous);
+            let _ = fs::hard_link(&self.path, &self.previous);
+        }
+        let bytes = write(&self.path, description, film.tiles())?;
+        self.is_good = true;
+        Ok(bytes)
+    }
+
+    /// The work is done: the one before is of no use any more.
+    pub fn close(self) {
+        let _ = fs::remove_file(&self.previous);
+    }
+}
+
+/// The part in a file, all of it verified; nothing where no file is.
+fn trusted(path: &Path) -> Result<Option<Part>, PartError> {
+    match Part::open(path) {
+        Err(PartError::Read { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+        Ok(part) => part.verify().map(|()| Some(part)),
+    }
+}
+
+/// Puts what a part holds on a film that is to become what `goal` says.
+pub fn resume(part: &Part, goal: &Description, film: &Film) -> Result<(), ResumeError> {
+    let file = || part.path().display().to_string();
+    let found = part.description();
+    let differences = goal.mismatches(found);
+    let differences: Vec<String> = differences
+        .iter()
+        // How far it went before may differ.
+        .filter(|difference| !["samples", "stop"].contains(&difference.name.as_str()))
+        .map(ToString::to_string)
+        .collect();
+    if !differences.is_empty() {
+        return Err(ResumeError::Foreign { file: file(), differences: differences.join("; ") });
+    }
+    let beyond = |what: String| ResumeError::Beyond { file: file(), what };
+    check_stop(found.stop, goal.stop).map_err(&beyond)?;
+    let mut reader = part.reader()?;
+    for number in part.tiles() {
+        let tile = reader.tile(number)?;
+        check_tile(&tile, number, film).map_err(&beyond)?;
+        film.add(number, tile).map_err(|error| ResumeError::Tile { file: file(), error })?;
+    }
+    Ok(())
+}
+
+/// Whether a picture that was to end by one rule can be gone on with by another and be as if it had always been that
+/// one.
+fn check_stop(before: Stop, now: Stop) -> Result<(), String> {
+    match (before, now) {
+        (Stop::Noise { level: before }, Stop::Noise { level: now }) if now > before => {
+            Err(format!("was to end at noise {before}, which is finer than {now}"))
+        }
+        (Stop::Samples | Stop::Time { .. }, Stop::Noise { .. }) => {
+            Err("was not ended by noise: by that rule it might have fewer samples".into())
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_tile(tile: &Tile, number: u64, film: &Film) -> Result<(), String> {
+    let wanted = film.wanted_of(number);
+    let outside =
+        |samples: &Range<u32>| !wanted.iter().any(|wanted| wanted.start <= samples.start && samples.end <= wanted.end);
+    match tile.runs().iter().map(|run| &run.samples).find(|samples| outside(samples)) {
+        None => Ok(()),
+        Some(_) if wanted.is_empty() => Err(format!("holds tile {number}, which is no part of what is asked for")),
+        Some(samples) => {
+            let (end, most) = (samples.end, wanted.last().map_or(0, |wanted| wanted.end));
+            Err(format!("holds samples up to {end} of a pixel; what is there beyond {most} cannot be taken back"))
+        }
+    }
+}

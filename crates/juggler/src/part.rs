@@ -1,0 +1,88 @@
+//! A picture on a film: exposed in parts, kept, gone on with, joined.
+
+use crate::{Error, Limit, Picture};
+use juggler_film::part::{Description, Share, Stop};
+use juggler_imaging::{Header, RowWriter};
+use juggler_math::Rgb;
+use juggler_tracer::film::{Digest, Film, Layout, Summary};
+use juggler_tracer::render::{self, Control, Stopped};
+
+/// What made a picture, besides what the picture knows of itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// Name of the scene.
+    pub scene: String,
+    /// The frame, which may lie between two.
+    pub frame: f64,
+    /// The command line that renders the whole picture; empty when no command does.
+    pub command: String,
+}
+
+impl Picture {
+    /// How it is cut into tiles.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.region())
+    }
+
+    /// A film for all of it.
+    pub fn film(&self) -> Film {
+        Film::new(self.layout(), 0..self.samples())
+    }
+
+    /// Exposes a film until it is finished, or until `control` says so. What is there already is gone on with.
+    pub fn expose(&self, film: &Film, control: &Control) -> Result<(), Stopped> {
+        render::expose(&self.job(), film, self.limit().stop(), control)
+    }
+
+    /// Whether every tile of a film has enough samples.
+    pub fn is_finished(&self, film: &Film) -> bool {
+        matches!(self.limit(), Limit::Time { .. }) || render::is_finished(film, self.limit().stop())
+    }
+
+    /// Hands the finished rows of a film to `rows`, from top to bottom.
+    pub fn develop<E>(&self, film: &Film, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<Summary, E> {
+        let [width, height] = self.size();
+        let mut digest = Digest::new(width, height);
+        film.develop(|band: &[Rgb]| {
+            digest.update(band);
+            rows(band)
+        })?;
+        Ok(digest.finish())
+    }
+
+    /// Writes a film as a picture.
+    pub fn write_film(&self, film: &Film, mut writer: Box<dyn RowWriter>) -> Result<Summary, Error> {
+        let summary = self.develop(film, |rows| Ok::<(), Error>(writer.write_rows(rows)?))?;
+        writer.finish()?;
+        Ok(summary)
+    }
+
+    /// What ends it, as film parts say it.
+    pub fn end(&self) -> Stop {
+        match *self.limit() {
+            Limit::Samples => Stop::Samples,
+            Limit::Noise(level) => Stop::Noise { level: f64::from(level) },
+            Limit::Time { seconds } => Stop::Time { seconds },
+        }
+    }
+
+    /// What a film part of this picture says about itself; `header` is that of the picture's file.
+    pub fn description(&self, origin: &Origin, header: &Header, share: Share) -> Description {
+        let [width, height] = self.compiled().settings.size;
+        Description {
+            software: crate::picture::SOFTWARE.to_owned(),
+            command: origin.command.clone(),
+            scene: origin.scene.clone(),
+            frame: origin.frame,
+            size: [width, height],
+            region: self.region(),
+            samples: self.samples(),
+            stop: self.end(),
+            share,
+            finished: false,
+            fingerprint: self.fingerprint().parts().clone(),
+            tone: serde_json::to_value(self.tone()).unwrap_or_default(),
+            metadata: header.metadata.clone(),
+        }
+    }
+}
