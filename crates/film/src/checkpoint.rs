@@ -160,3 +160,129 @@ fn check_tile(tile: &Tile, number: u64, film: &Film) -> Result<(), String> {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::testing::{description, place, tile, tiles};
+    use juggler_tracer::film::{Layout, Rect};
+
+    const REGION: Rect = Rect { x: 0, y: 0, width: 40, height: 20 };
+
+    fn film(samples: u32) -> Film {
+        Film::new(Layout::new(REGION), 0..samples)
+    }
+
+    fn exposed(held: u32, wanted: u32) -> Film {
+        let film = film(wanted);
+        tiles(REGION, 0..held).into_iter().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
+        film
+    }
+
+    fn found(path: &Path) -> (Checkpoint, Found) {
+        Checkpoint::open(path).unwrap()
+    }
+
+    #[test]
+    fn what_was_kept_is_gone_on_with() {
+        let (_folder, path) = place("a.jfilm");
+        let (mut kept, nothing) = found(&path);
+        assert!(nothing.part.is_none() && nothing.damage.is_none());
+        kept.save(&description(REGION, 64), &exposed(20, 64)).unwrap();
+        let part = found(&path).1.part.unwrap();
+        for goal in [64, 100] {
+            let film = film(goal);
+            resume(&part, &description(REGION, goal), &film).unwrap();
+            assert_eq!(film.tiles().collect::<Vec<_>>(), exposed(20, 64).tiles().collect::<Vec<_>>());
+        }
+        let refused = resume(&part, &description(REGION, 16), &film(16)).unwrap_err().to_string();
+        assert!(refused.contains("up to 20") && refused.contains("beyond 16"), "{refused}");
+    }
+
+    #[test]
+    fn another_picture_is_refused_with_what_differs() {
+        let (_folder, path) = place("a.jfilm");
+        found(&path).0.save(&description(REGION, 64), &exposed(16, 64)).unwrap();
+        let part = found(&path).1.part.unwrap();
+        let mut other = description(REGION, 64);
+        other.fingerprint.insert("seed".into(), "8".into());
+        other.frame = 3.0;
+        let refused = resume(&part, &other, &film(64)).unwrap_err().to_string();
+        assert!(refused.contains("seed: 7 instead of 8") && refused.contains("frame: 2.4"), "{refused}");
+        let small = Film::of(Layout::new(REGION), [(0, 0..64)]);
+        let refused = resume(&part, &description(REGION, 64), &small).unwrap_err().to_string();
+        assert!(refused.contains("tile 1"), "{refused}");
+    }
+
+    #[test]
+    fn rules_to_stop_can_be_made_stricter_only() {
+        let noise = |level| Stop::Noise { level };
+        let time = Stop::Time { seconds: 1.0 };
+        for (before, now) in [
+            (Stop::Samples, Stop::Samples), (noise(0.1), noise(0.1)), (noise(0.1), noise(0.05)), (noise(0.1), Stop::Samples),
+            (time, Stop::Samples), (Stop::Samples, time), (noise(0.1), time),
+        ] {
+            assert_eq!(check_stop(before, now), Ok(()), "{before} {now}");
+        }
+        for (before, now) in [(noise(0.05), noise(0.1)), (Stop::Samples, noise(0.1)), (time, noise(0.1))] {
+            assert!(check_stop(before, now).is_err(), "{before} {now}");
+        }
+    }
+
+    #[test]
+    fn a_damaged_file_gives_way_to_the_one_before() {
+        let (_folder, path) = place("a.jfilm");
+        let (mut kept, _) = found(&path);
+        kept.save(&description(REGION, 64), &exposed(16, 64)).unwrap();
+        kept.save(&description(REGION, 64), &exposed(32, 64)).unwrap();
+        let good = fs::read(&path).unwrap();
+        let held = |found: &Found| found.part.as_ref().map(|part| part.tile(0).unwrap().samples());
+        for bytes in [good.len() / 2, good.len() - 1, 4, 0] {
+            fs::write(&path, &good[..bytes]).unwrap();
+            let (mut kept, found) = found(&path);
+            assert_eq!((held(&found), found.damage.is_some()), (Some(16), true), "{bytes} bytes");
+            // What is damaged does not push the good one out.
+            kept.save(&description(REGION, 64), &exposed(48, 64)).unwrap();
+            assert_eq!(held(&self::found(&path).1), Some(48));
+            fs::write(&path, "damaged again").unwrap();
+            assert_eq!(held(&self::found(&path).1), Some(16));
+        }
+        // Killed between taking the old one away and putting the new one in its place.
+        fs::remove_file(&path).unwrap();
+        assert_eq!(held(&found(&path).1), Some(16));
+        fs::write(path.with_file_name("a.jfilm.previous"), "no part").unwrap();
+        fs::write(&path, &good[..good.len() - 1]).unwrap();
+        assert!(matches!(Checkpoint::open(&path), Err(PartError::Truncated { .. })), "nothing good is left");
+    }
+
+    #[test]
+    fn the_end_leaves_one_file() {
+        let (folder, path) = place("a.jfilm");
+        let (mut kept, _) = found(&path);
+        kept.save(&description(REGION, 64), &exposed(16, 64)).unwrap();
+        kept.save(&description(REGION, 64), &exposed(64, 64)).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        kept.close();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn other_files_are_never_written_over() {
+        let (_folder, path) = place("scene.json");
+        fs::write(&path, "{}").unwrap();
+        assert!(matches!(Checkpoint::open(&path), Err(PartError::NotAPart { .. })));
+    }
+
+    #[test]
+    fn a_part_of_a_tile_that_is_wanted_in_pieces_fits() {
+        let (_folder, path) = place("a.jfilm");
+        let wanted = || Film::of(Layout::new(REGION), [(0, 0..16), (0, 16..32), (0, 48..64)]);
+        let some = wanted();
+        assert_eq!(some.add(0, tile(Layout::new(REGION).tile(0).unwrap(), 0..32)), Ok(true));
+        found(&path).0.save(&description(REGION, 64), &some).unwrap();
+        let again = wanted();
+        resume(&found(&path).1.part.unwrap(), &description(REGION, 64), &again).unwrap();
+        assert_eq!(again.samples(), 32 * 256);
+    }
+}

@@ -1,0 +1,155 @@
+//! Work that is kept, gone on with, shared and joined.
+
+use crate::harness::Folder;
+use serde_json::Value;
+use std::fs;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const BALL: &str = "ball.json --size 48x36";
+
+#[test]
+fn a_checkpoint_changes_nothing_and_is_gone_on_with() {
+    let folder = Folder::new();
+    let straight = |samples: u32| {
+        folder.good(&format!("render {BALL} --samples {samples} -o straight.png -q"));
+        fs::read(folder.path("straight.png")).unwrap()
+    };
+    for samples in [20, 70] {
+        folder.good(&format!("render {BALL} --samples {samples} -o out.png -q --checkpoint kept.jfilm"));
+        assert_eq!(fs::read(folder.path("out.png")).unwrap(), straight(samples), "{samples} samples");
+    }
+    // All is there already: no ray is traced.
+    let again = folder.stats(&format!("{BALL} --samples 70 -o again.png --checkpoint kept.jfilm"));
+    assert_eq!(again["rays"]["camera"], 0);
+    assert_eq!(fs::read(folder.path("again.png")).unwrap(), straight(70));
+    assert_eq!(folder.files(), ["again.png", "kept.jfilm", "out.png", "straight.png"]);
+}
+
+#[test]
+fn another_picture_does_not_go_on() {
+    let folder = Folder::new();
+    folder.good(&format!("render {BALL} --samples 16 -q --checkpoint kept.jfilm"));
+    let kept = fs::read(folder.path("kept.jfilm")).unwrap();
+    for (flags, said) in [
+        ("--seed 7", "render.seed: 0 instead of 7"),
+        ("--frame 1", "frame: 0 instead of 1"),
+        ("--integrator normals", "render.integrator"),
+        ("--camera top", "render.camera"),
+        ("--crop 0,0,16,16", "region"),
+        ("--samples 8", "beyond 8"),
+        ("--noise 0.1", "noise"),
+    ] {
+        let message = folder.bad(&format!("render {BALL} --samples 16 -q --checkpoint kept.jfilm {flags}"), 2);
+        assert!(message.contains(said) && message.contains("kept.jfilm"), "{flags}: {message}");
+        assert_eq!(fs::read(folder.path("kept.jfilm")).unwrap(), kept, "{flags}");
+    }
+    let changed = fs::read_to_string(folder.path("ball.json")).unwrap().replace("[0.8, 0.1, 0.1]", "[0.8, 0.2, 0.1]");
+    fs::write(folder.path("ball.json"), changed).unwrap();
+    let message = folder.bad(&format!("render {BALL} --samples 16 -q --checkpoint kept.jfilm"), 2);
+    assert!(message.contains("materials"), "{message}");
+    let message = folder.bad(&format!("render {BALL} --checkpoint ball.json"), 2);
+    assert!(message.contains("ball.json"), "{message}");
+}
+
+#[test]
+fn an_interrupted_render_keeps_its_work() {
+    let folder = Folder::new();
+    let line = format!("render {BALL} --size 100x100 --samples 100000 --checkpoint kept.jfilm --checkpoint-every 0.05");
+    for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-KILL", -1)] {
+        let child = folder.command(&line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let start = Instant::now();
+        let old = fs::metadata(folder.path("kept.jfilm")).and_then(|data| data.modified()).ok();
+        let new = || fs::metadata(folder.path("kept.jfilm")).and_then(|data| data.modified()).ok();
+        while new() == old {
+            assert!(start.elapsed() < Duration::from_secs(20), "nothing was kept");
+            sleep(Duration::from_millis(5));
+        }
+        std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code().unwrap_or(-1), status);
+        if status > 0 {
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(said.contains("the work so far is in `kept.jfilm`"), "{said}");
+        }
+    }
+    let left: Vec<String> = folder.files().into_iter().filter(|name| !name.starts_with(".kept")).collect();
+    assert_eq!(left, ["kept.jfilm", "kept.jfilm.previous"]);
+}
+
+#[test]
+fn shards_make_the_picture() {
+    let folder = Folder::new();
+    folder.good(&format!("render {BALL} --samples 40 -o straight.png -q"));
+    for count in [2, 5] {
+        let mut parts = Vec::new();
+        for index in (0..count).rev() {
+            folder.good(&format!("render {BALL} --samples 40 -q --shard {index}/{count} -o part{index}.jfilm"));
+            parts.push(format!("part{index}.jfilm"));
+        }
+        folder.good(&format!("merge {} -o merged.png -q", parts.join(" ")));
+        let (merged, straight) = (fs::read(folder.path("merged.png")), fs::read(folder.path("straight.png")));
+        assert!(merged.unwrap() == straight.unwrap(), "{count} shards");
+    }
+    let message = folder.bad("merge part0.jfilm part3.jfilm part0.jfilm -o merged.png", 2);
+    assert!(message.contains("part0.jfilm") && message.contains("1-2,4"), "{message}");
+}
+
+#[test]
+fn clusters_number_their_shards() {
+    let folder = Folder::new();
+    folder.good(&format!("render {BALL} -q --shard 1/3 -o typed.jfilm"));
+    let line = format!("render {BALL} -q --shard auto/3 -o auto.jfilm");
+    let output = folder.command(&line).env("SLURM_ARRAY_TASK_ID", "1").output().unwrap();
+    assert!(output.status.success());
+    assert_eq!(fs::read(folder.path("auto.jfilm")).unwrap(), fs::read(folder.path("typed.jfilm")).unwrap());
+}
+
+#[test]
+fn parts_cut_by_hand_join() {
+    let folder = Folder::new();
+    folder.good(&format!("render {BALL} --samples 48 -o straight.png -q"));
+    for (number, flags) in ["--crop 0,0,48,16", "--crop 0,16,48,20 --sample-range 0..32", "--crop 0,16,48,20 --sample-range 32..48"]
+        .iter()
+        .enumerate()
+    {
+        folder.good(&format!("render {BALL} --samples 48 -q {flags} -o cut{number}.jfilm"));
+    }
+    folder.good("merge cut2.jfilm cut0.jfilm cut1.jfilm -o merged.png -q");
+    assert_eq!(fs::read(folder.path("merged.png")).unwrap(), fs::read(folder.path("straight.png")).unwrap());
+    let message = folder.bad(&format!("render {BALL} --crop 1,0,20,16 -o cut.jfilm"), 2);
+    assert!(message.contains("0,0,32,16"), "{message}");
+    assert!(folder.bad(&format!("render {BALL} --crop 40,0,20,16 -o cut.jfilm"), 2).contains("beyond"));
+    assert!(folder.bad(&format!("render {BALL} --sample-range 0..64 --samples 48 -o cut.jfilm"), 2).contains("48"));
+}
+
+#[test]
+fn noise_gives_one_picture_on_any_threads_and_in_any_parts() {
+    let folder = Folder::new();
+    let flags = "--noise 0.004 --samples 512 -q";
+    let one = folder.hash(&format!("{BALL} {flags} --threads 1 -o one.png"));
+    assert_eq!(folder.hash(&format!("{BALL} {flags} --threads 3 -o three.png")), one);
+    for index in 0..3 {
+        folder.good(&format!("render {BALL} {flags} --shard {index}/3 -o part{index}.jfilm"));
+    }
+    folder.good("merge part1.jfilm part2.jfilm part0.jfilm -o merged.png -q");
+    assert_eq!(fs::read(folder.path("merged.png")).unwrap(), fs::read(folder.path("one.png")).unwrap());
+    let finer = folder.stats(&format!("{BALL} {flags} --noise 0.5 -o coarse.png"));
+    assert_eq!(finer["rays"]["camera"], 64 * 48 * 36, "the least from which noise is told");
+}
+
+#[test]
+fn a_picture_ended_by_time_is_made_again_from_its_counts() {
+    let folder = Folder::new();
+    let stats: Value = folder.stats(&format!("{BALL} --time 0.3 -o timed.png --checkpoint timed.jfilm"));
+    assert!(stats["seconds"]["render"].as_f64().unwrap() < 10.0);
+    let hash = stats["film"]["hash"].as_str().unwrap();
+    for file in ["timed.png", "timed.jfilm"] {
+        assert_eq!(folder.hash(&format!("{BALL} --samples-from {file} -o again.png")), hash, "{file}");
+    }
+    assert_eq!(fs::read(folder.path("again.png")).unwrap(), fs::read(folder.path("timed.png")).unwrap());
+    assert!(folder.bad("render ball.json --samples-from timed.png", 2).contains("another picture"));
+    folder.good(&format!("render {BALL} -o plain.png -q"));
+    assert!(folder.bad(&format!("render {BALL} --samples-from plain.png"), 2).contains("does not say"));
+}
