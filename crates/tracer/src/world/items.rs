@@ -38,7 +38,8 @@ impl Placed {
     pub fn closest(&self, ray: &mut Ray, number: u32, best: &mut WorldHit) {
         let hit = match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
-            (Content::Shape(shape), None) => shape.intersect(&self.local(ray)),
+            (Content::Shape(shape), None) if self.unmoved => shape.intersect(ray),
+            (Content::Shape(shape), None) => shape.intersect(&self.transform.ray_to_local(ray)),
             (Content::Level(level), _) => {
                 let mut local = self.local(ray);
                 level.closest(&mut local, number, best);
@@ -56,7 +57,8 @@ impl Placed {
     pub fn occludes(&self, ray: &Ray) -> bool {
         match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
-            (Content::Shape(shape), None) => shape.occludes(&self.local(ray)),
+            (Content::Shape(shape), None) if self.unmoved => shape.occludes(ray),
+            (Content::Shape(shape), None) => shape.occludes(&self.transform.ray_to_local(ray)),
             (Content::Level(level), _) => level.occludes(&self.local(ray)),
         }
     }
