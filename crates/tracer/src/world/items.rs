@@ -2,7 +2,7 @@
 
 use super::{Content, Object, WorldHit};
 use crate::material::MaterialId;
-use crate::shape::{AnyShape, Hit, intersect_sphere, longitude_latitude, sphere_surface};
+use crate::shape::{AnyShape, Hit, Shape, intersect_sphere, longitude_latitude, sphere_surface};
 use crate::surface::Surface;
 use juggler_math::{Ray, Transform, Vec3};
 
@@ -49,6 +49,21 @@ impl Placed {
         };
         if let Some(hit) = hit {
             best.keep(hit, number, ray);
+        }
+    }
+
+    /// [`Placed::closest`] for each of the rays; what the object is, is asked once.
+    pub fn closest_each(&self, rays: &mut [Ray], number: u32, hits: &mut [WorldHit]) {
+        let Content::Shape(shape) = &self.content else {
+            rays.iter_mut().zip(hits).for_each(|(ray, best)| self.closest(ray, number, best));
+            return;
+        };
+        let shape: &dyn Shape = &***shape;
+        for (ray, best) in rays.iter_mut().zip(hits) {
+            let hit = if self.unmoved { shape.intersect(ray) } else { shape.intersect(&self.local(ray)) };
+            if let Some(hit) = hit {
+                best.keep(hit, number, ray);
+            }
         }
     }
 
@@ -110,8 +125,15 @@ pub enum Item {
         /// Number of the shape.
         number: u32,
     },
-    /// Anything else.
+    /// Any other shape.
     Other {
+        /// Place of the object in its level.
+        place: u32,
+        /// Number of the shape.
+        number: u32,
+    },
+    /// An instance of another level.
+    Instance {
         /// Place of the object in its level.
         place: u32,
         /// Number of its first shape.
@@ -123,7 +145,8 @@ impl Item {
     pub fn new(object: &Object, place: u32, number: u32) -> Self {
         match sphere(object) {
             Some((center, radius)) => Self::Sphere { center, radius, number },
-            None => Self::Other { place, number },
+            None if object.content.as_shape().is_some() => Self::Other { place, number },
+            None => Self::Instance { place, number },
         }
     }
 
@@ -136,7 +159,9 @@ impl Item {
                     best.keep(hit, first + number, ray);
                 }
             }
-            Self::Other { place, number } => objects[place as usize].closest(ray, first + number, best),
+            Self::Other { place, number } | Self::Instance { place, number } => {
+                objects[place as usize].closest(ray, first + number, best)
+            }
         }
     }
 
@@ -145,7 +170,7 @@ impl Item {
     pub fn occludes(&self, objects: &[Placed], ray: &Ray) -> bool {
         match *self {
             Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
-            Self::Other { place, .. } => objects[place as usize].occludes(ray),
+            Self::Other { place, .. } | Self::Instance { place, .. } => objects[place as usize].occludes(ray),
         }
     }
 }
