@@ -38,8 +38,11 @@ impl Placed {
     pub fn closest(&self, ray: &mut Ray, number: u32, best: &mut WorldHit) {
         let hit = match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
-            (Content::Shape(shape), None) if self.unmoved => shape.intersect(ray),
-            (Content::Shape(shape), None) => shape.intersect(&self.transform.ray_to_local(ray)),
+            (Content::Shape(shape), None) => match &**shape {
+                AnyShape::Sphere(sphere) => sphere.intersect(&self.local(ray)),
+                shape if self.unmoved => shape.intersect(ray),
+                shape => shape.intersect(&self.transform.ray_to_local(ray)),
+            },
             (Content::Level(level), _) => {
                 let mut local = self.local(ray);
                 level.closest(&mut local, number, best);
@@ -72,8 +75,11 @@ impl Placed {
     pub fn occludes(&self, ray: &Ray) -> bool {
         match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
-            (Content::Shape(shape), None) if self.unmoved => shape.occludes(ray),
-            (Content::Shape(shape), None) => shape.occludes(&self.transform.ray_to_local(ray)),
+            (Content::Shape(shape), None) => match &**shape {
+                AnyShape::Sphere(sphere) => sphere.intersect(&self.local(ray)).is_some(),
+                shape if self.unmoved => shape.occludes(ray),
+                shape => shape.occludes(&self.transform.ray_to_local(ray)),
+            },
             (Content::Level(level), _) => level.occludes(&self.local(ray)),
         }
     }
