@@ -39,9 +39,9 @@ impl Placed {
         let hit = match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
             (Content::Shape(shape), None) => match &**shape {
+                // No virtual call for what is most: spheres that are none in the level's space.
                 AnyShape::Sphere(sphere) => sphere.intersect(&self.local(ray)),
-                shape if self.unmoved => shape.intersect(ray),
-                shape => shape.intersect(&self.transform.ray_to_local(ray)),
+                shape => self.intersect(&**shape, ray),
             },
             (Content::Level(level), _) => {
                 let mut local = self.local(ray);
@@ -57,17 +57,23 @@ impl Placed {
 
     /// [`Placed::closest`] for each of the rays; what the object is, is asked once.
     pub fn closest_each(&self, rays: &mut [Ray], number: u32, hits: &mut [WorldHit]) {
-        let Content::Shape(shape) = &self.content else {
-            rays.iter_mut().zip(hits).for_each(|(ray, best)| self.closest(ray, number, best));
-            return;
+        let rays = rays.iter_mut().zip(hits);
+        let (Content::Shape(shape), None) = (&self.content, self.sphere) else {
+            return rays.for_each(|(ray, best)| self.closest(ray, number, best));
         };
         let shape: &dyn Shape = &***shape;
-        for (ray, best) in rays.iter_mut().zip(hits) {
-            let hit = if self.unmoved { shape.intersect(ray) } else { shape.intersect(&self.local(ray)) };
-            if let Some(hit) = hit {
+        for (ray, best) in rays {
+            if let Some(hit) = self.intersect(shape, ray) {
                 best.keep(hit, number, ray);
             }
         }
+    }
+
+    /// The nearest hit of this object's `shape`.
+    #[inline(always)]
+    fn intersect(&self, shape: &dyn Shape, ray: &Ray) -> Option<Hit> {
+        // Without a copy of the ray where it can be avoided.
+        if self.unmoved { shape.intersect(ray) } else { shape.intersect(&self.transform.ray_to_local(ray)) }
     }
 
     /// Whether anything is hit in the ray's range.
