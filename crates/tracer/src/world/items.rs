@@ -172,7 +172,7 @@ impl Item {
                 }
             }
             Self::Other { place, number } | Self::Instance { place, number } => {
-                objects[place as usize].closest(ray, first + number, best)
+                objects[place as usize].closest(ray, first + number, best);
             }
         }
     }
