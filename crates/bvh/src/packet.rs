@@ -199,8 +199,8 @@ impl Bvh {
             #[inline(always)]
             || {
                 for (lane, ray) in rays.iter_mut().enumerate() {
-                    let slabs = Slabs::of_ray(simd, ray);
-                    self.closest_below(simd, Child::ROOT, stack, (first + lane, ray), slabs, leaf);
+                    let mut slabs = Slabs::of_ray(simd, ray);
+                    self.closest_below(simd, Child::ROOT, stack, (first + lane, ray), &mut slabs, leaf);
                 }
             },
         );

@@ -8,6 +8,9 @@ use crate::{Bvh, Leaf};
 use fearless_simd::dispatch;
 use juggler_math::Ray;
 
+/// So many rays are made ready together: each is a chain of latencies, which then overlap.
+const AHEAD: usize = 8;
+
 impl Bvh {
     /// Shows the visitor every leaf that could hold the closest hit, near ones first. Lane 0.
     pub fn closest(&self, ray: &mut Ray, leaf: &mut impl Leaf) {
@@ -34,19 +37,29 @@ impl Bvh {
 
     #[inline(always)]
     fn closest_each<S: Lanes>(&self, simd: S, rays: &mut [Ray], leaf: &mut impl Leaf) {
-        let mut stack = Stack::new();
-        for (lane, ray) in rays.iter_mut().enumerate() {
-            let slabs = Slabs::of_ray(simd, ray);
-            self.closest_below(simd, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
+        let (mut stack, mut ready) = (Stack::new(), [Slabs::default(); AHEAD]);
+        for (number, rays) in rays.chunks_mut(AHEAD).enumerate() {
+            for (slabs, ray) in ready.iter_mut().zip(&*rays) {
+                slabs.fill(simd, ray);
+            }
+            for (lane, (ray, slabs)) in rays.iter_mut().zip(&mut ready).enumerate() {
+                let lane = number * AHEAD + lane;
+                self.closest_below(simd, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
+            }
         }
     }
 
     #[inline(always)]
     fn any_each<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool], leaf: &mut impl Leaf) {
-        let mut stack = Stack::new();
-        for (lane, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-            let slabs = Slabs::of_ray(simd, ray);
-            *occluded = self.any_below(simd, Child::ROOT, &mut stack, (lane, ray), &slabs, leaf);
+        let (mut stack, mut ready) = (Stack::new(), [Slabs::default(); AHEAD]);
+        for (number, (rays, occluded)) in rays.chunks(AHEAD).zip(occluded.chunks_mut(AHEAD)).enumerate() {
+            for (slabs, ray) in ready.iter_mut().zip(rays) {
+                slabs.fill(simd, ray);
+            }
+            for (lane, ((ray, occluded), slabs)) in rays.iter().zip(occluded).zip(&ready).enumerate() {
+                let lane = number * AHEAD + lane;
+                *occluded = self.any_below(simd, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
+            }
         }
     }
 
@@ -58,7 +71,7 @@ impl Bvh {
         from: Child,
         stack: &mut Stack,
         (lane, ray): (usize, &mut Ray),
-        mut slabs: Slabs,
+        slabs: &mut Slabs,
         leaf: &mut impl Leaf,
     ) {
         let (nodes, base) = (&*self.nodes, stack.len());
@@ -66,7 +79,7 @@ impl Bvh {
         loop {
             while !current.is_leaf() {
                 let node = &nodes[current.0 as usize];
-                let (mask, enter) = node.test(simd, &slabs);
+                let (mask, enter) = node.test(simd, slabs);
                 let next = nearest(
                     mask,
                     &enter.into(),

@@ -31,7 +31,7 @@ const OFFSET: f32 = 4.0 * f32::EPSILON;
 
 /// One ray, ready for [`Node::test`](crate::node::Node::test): a plane at `p` is met at
 /// `p * inverse + offset`, with both rounded to the safe side. The fourth of each four means nothing.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Slabs {
     /// Bit per axis: 0 where the minimum is the near plane, 1 where the maximum is.
     pub signs: u32,
@@ -87,16 +87,25 @@ fn inverse(component: f32) -> f32 {
 impl Slabs {
     #[inline(always)]
     pub fn of_ray<S: Lanes>(simd: S, ray: &Ray) -> Self {
+        let mut slabs = Self::default();
+        slabs.fill(simd, ray);
+        slabs
+    }
+
+    /// Takes a ray in, in place: a copy by wide loads would wait for the narrow stores before it.
+    #[inline(always)]
+    pub fn fill<S: Lanes>(&mut self, simd: S, ray: &Ray) {
         let (o, d) = (ray.origin, ray.direction);
         let origin: f32x4<S> = [o.x, o.y, o.z, d.x].simd_into(simd);
         let direction: f32x4<S> = [d.x, d.y, d.z, ray.t_min].simd_into(simd);
         let inverse = f32x4::splat(simd, 1.0) / direction;
         let offset = origin * inverse;
         if offset.abs().simd_lt(f32::INFINITY).to_bitmask() & 7 != 7 {
-            return Self::parallel(*ray);
+            *self = Self::parallel(*ray);
+            return;
         }
         let pad = offset.abs() * OFFSET;
-        Self {
+        *self = Self {
             signs: direction.simd_lt(0.0).to_bitmask() as u32,
             exact_inverse: inverse.into(),
             inverse: inverse.into(),
@@ -105,7 +114,7 @@ impl Slabs {
             far_offset: (pad - offset * WIDEN).into(),
             t_min: ray.t_min,
             t_max: cull_distance(ray.t_max),
-        }
+        };
     }
 
     /// For rays that run parallel, or almost, to an axis plane: along that axis the ray stays where it is, so

@@ -40,9 +40,16 @@ impl<F: Filter> Query<'_, F> {
 
     #[inline(always)]
     fn closest_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> Option<TriangleHit> {
-        let slabs = Slabs::of_ray(simd, ray);
+        let mut slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, *self, ray, &slabs);
-        self.tree.bvh.closest_below(simd, Child::ROOT, &mut Stack::new(), (number, &mut { *ray }), slabs, &mut one);
+        self.tree.bvh.closest_below(
+            simd,
+            Child::ROOT,
+            &mut Stack::new(),
+            (number, &mut { *ray }),
+            &mut slabs,
+            &mut one,
+        );
         one.hit
     }
 

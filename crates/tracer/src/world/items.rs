@@ -2,7 +2,7 @@
 
 use super::{Content, Object, WorldHit};
 use crate::material::MaterialId;
-use crate::shape::{AnyShape, Hit, intersect_sphere, longitude_latitude, sphere_surface};
+use crate::shape::{AnyShape, Hit, Shape, intersect_sphere, longitude_latitude, sphere_surface};
 use crate::surface::Surface;
 use juggler_math::{Ray, Transform, Vec3};
 
@@ -38,7 +38,11 @@ impl Placed {
     pub fn closest(&self, ray: &mut Ray, number: u32, best: &mut WorldHit) {
         let hit = match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray),
-            (Content::Shape(shape), None) => shape.intersect(&self.local(ray)),
+            (Content::Shape(shape), None) => match &**shape {
+                // No virtual call for what is most: spheres that are none in the level's space.
+                AnyShape::Sphere(sphere) => sphere.intersect(&self.local(ray)),
+                shape => self.intersect(&**shape, ray),
+            },
             (Content::Level(level), _) => {
                 let mut local = self.local(ray);
                 level.closest(&mut local, number, best);
@@ -51,12 +55,37 @@ impl Placed {
         }
     }
 
+    /// [`Placed::closest`] for each of the rays; what the object is, is asked once.
+    pub fn closest_each(&self, rays: &mut [Ray], number: u32, hits: &mut [WorldHit]) {
+        let rays = rays.iter_mut().zip(hits);
+        let (Content::Shape(shape), None) = (&self.content, self.sphere) else {
+            return rays.for_each(|(ray, best)| self.closest(ray, number, best));
+        };
+        let shape: &dyn Shape = &***shape;
+        for (ray, best) in rays {
+            if let Some(hit) = self.intersect(shape, ray) {
+                best.keep(hit, number, ray);
+            }
+        }
+    }
+
+    /// The nearest hit of this object's `shape`.
+    #[inline(always)]
+    fn intersect(&self, shape: &dyn Shape, ray: &Ray) -> Option<Hit> {
+        // Without a copy of the ray where it can be avoided.
+        if self.unmoved { shape.intersect(ray) } else { shape.intersect(&self.transform.ray_to_local(ray)) }
+    }
+
     /// Whether anything is hit in the ray's range.
     #[inline]
     pub fn occludes(&self, ray: &Ray) -> bool {
         match (&self.content, self.sphere) {
             (Content::Shape(_), Some((center, radius))) => intersect_sphere(center, radius, ray).is_some(),
-            (Content::Shape(shape), None) => shape.occludes(&self.local(ray)),
+            (Content::Shape(shape), None) => match &**shape {
+                AnyShape::Sphere(sphere) => sphere.intersect(&self.local(ray)).is_some(),
+                shape if self.unmoved => shape.occludes(ray),
+                shape => shape.occludes(&self.transform.ray_to_local(ray)),
+            },
             (Content::Level(level), _) => level.occludes(&self.local(ray)),
         }
     }
@@ -108,8 +137,15 @@ pub enum Item {
         /// Number of the shape.
         number: u32,
     },
-    /// Anything else.
+    /// Any other shape.
     Other {
+        /// Place of the object in its level.
+        place: u32,
+        /// Number of the shape.
+        number: u32,
+    },
+    /// An instance of another level.
+    Instance {
         /// Place of the object in its level.
         place: u32,
         /// Number of its first shape.
@@ -121,7 +157,8 @@ impl Item {
     pub fn new(object: &Object, place: u32, number: u32) -> Self {
         match sphere(object) {
             Some((center, radius)) => Self::Sphere { center, radius, number },
-            None => Self::Other { place, number },
+            None if object.content.as_shape().is_some() => Self::Other { place, number },
+            None => Self::Instance { place, number },
         }
     }
 
@@ -134,7 +171,9 @@ impl Item {
                     best.keep(hit, first + number, ray);
                 }
             }
-            Self::Other { place, number } => objects[place as usize].closest(ray, first + number, best),
+            Self::Other { place, number } | Self::Instance { place, number } => {
+                objects[place as usize].closest(ray, first + number, best);
+            }
         }
     }
 
@@ -143,7 +182,7 @@ impl Item {
     pub fn occludes(&self, objects: &[Placed], ray: &Ray) -> bool {
         match *self {
             Self::Sphere { center, radius, .. } => intersect_sphere(center, radius, ray).is_some(),
-            Self::Other { place, .. } => objects[place as usize].occludes(ray),
+            Self::Other { place, .. } | Self::Instance { place, .. } => objects[place as usize].occludes(ray),
         }
     }
 }

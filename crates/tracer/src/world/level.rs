@@ -28,7 +28,7 @@ pub struct Level {
     /// Bounded objects in the hierarchy's order.
     pub(super) items: Vec<Item>,
     pub(super) bvh: Bvh,
-    /// Large meshes beside the hierarchy, in the world's own level only: others are met by one ray at a time.
+    /// Large meshes beside the hierarchy, in the world's own level only: others are met by a packet at most.
     pub(super) large: Vec<Large>,
     /// Places of the objects without an end.
     pub(super) unbounded: Vec<u32>,

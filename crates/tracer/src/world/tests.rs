@@ -67,6 +67,29 @@ fn nested(random: &mut Random) -> World {
     world_of(objects)
 }
 
+/// Instances of instances that have an end, so that they stand in the hierarchy, among other objects; without the shapes
+/// of a crowd that have none.
+fn grove(random: &mut Random) -> World {
+    let bounded = |mut objects: Vec<Object>| {
+        objects.retain(Object::is_bounded);
+        objects
+    };
+    let mut content = Arc::new(Level::new(bounded(crowd(random, 1, None))));
+    for material in [1, 2] {
+        let mut objects = bounded(crowd(random, 1, Some(MaterialId(0))));
+        for _ in 0..6 {
+            let transform = random.transform().then(&Transform::translation(random.point(25.0)));
+            let material = Some(MaterialId(material));
+            objects.insert(
+                objects.len() / 2,
+                Object { content: Content::Level(Arc::clone(&content)), transform, material },
+            );
+        }
+        content = Arc::new(Level::new(objects));
+    }
+    world_of(vec![Object { content: Content::Level(content), transform: random.transform(), material: None }])
+}
+
 /// The same shapes without any level: transforms joined, materials inherited.
 fn expanded(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>) -> Vec<Object> {
     let expand = |placed: &Placed| {
@@ -106,12 +129,12 @@ fn nearest(world: &World, ray: &Ray) -> WorldHit {
     best
 }
 
-/// Eight rays from one place, close together or in all directions, some with an end.
-fn rays(random: &mut Random, round: usize) -> Vec<Ray> {
+/// So many rays from one place, close together or in all directions, some with an end.
+fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
     let origin = random.point(40.0);
     let axis = random.unit_vector();
     let spread = if round.is_multiple_of(2) { 0.02 } else { 2.0 };
-    (0..8)
+    (0..count)
         .map(|_| Ray::new(origin, (axis + random.unit_vector() * spread).normalize_or(axis)))
         .map(|ray| if round.is_multiple_of(3) { ray.up_to(30.0) } else { ray })
         .collect()
@@ -121,10 +144,11 @@ fn equals_brute_force(world: &World, rounds: usize) {
     let mut random = Random::new(17);
     let mut met = 0;
     for round in 0..rounds {
-        let rays = rays(&mut random, round);
+        // Now and then more than a group of packets, and not whole ones.
+        let rays = rays(&mut random, round, if round % 6 == 4 { 43 } else { 8 });
         let expected: Vec<WorldHit> = rays.iter().map(|ray| nearest(world, ray)).collect();
         met += expected.iter().filter(|hit| hit.is_some()).count();
-        let mut hits = vec![WorldHit::NONE; 8];
+        let mut hits = vec![WorldHit::NONE; rays.len()];
         world.closest_packet(&mut rays.clone(), &mut hits);
         assert_eq!(hits, expected, "packet, round {round}");
         world.closest_batch(&mut rays.clone(), &mut hits);
@@ -132,7 +156,7 @@ fn equals_brute_force(world: &World, rounds: usize) {
         let alone: Vec<WorldHit> = rays.iter().map(|ray| world.closest(&mut ray.clone())).collect();
         assert_eq!(alone, expected, "single, round {round}");
         let open: Vec<Rgb> = expected.iter().map(|h| if h.is_some() { Rgb::BLACK } else { Rgb::WHITE }).collect();
-        let mut through = vec![Rgb::BLACK; 8];
+        let mut through = vec![Rgb::BLACK; rays.len()];
         world.transmittance_packet(&rays, &mut through);
         assert_eq!(through, open, "shadow packet, round {round}");
         world.transmittance_batch(&rays, &mut through);
@@ -149,6 +173,51 @@ fn hierarchy_equals_brute_force_one_by_one_in_batches_and_in_packets() {
 #[test]
 fn instances_equal_brute_force() {
     equals_brute_force(&nested(&mut Random::new(19)), 300);
+    equals_brute_force(&grove(&mut Random::new(27)), 300);
+}
+
+/// The same level and all below it for another vector unit.
+fn at_simd_level(level: &Level, simd: juggler_bvh::SimdLevel) -> Level {
+    let mut level = level.clone();
+    level.bvh = level.bvh.with_simd_level(simd);
+    for placed in &mut level.objects {
+        if let Content::Level(below) = &mut placed.content {
+            *below = Arc::new(at_simd_level(below, simd));
+        }
+    }
+    level
+}
+
+#[test]
+fn every_vector_unit_equals_brute_force() {
+    for simd in juggler_bvh::simd_levels() {
+        let mut world = grove(&mut Random::new(24));
+        world.top = at_simd_level(&world.top, simd);
+        equals_brute_force(&world, 60);
+    }
+}
+
+/// Everything stands in its place three times, within instances and without: all hits are ties.
+#[test]
+fn of_coincident_instances_the_lower_number_is_hit() {
+    let mut random = Random::new(25);
+    let mut objects = crowd(&mut random, 2, Some(MaterialId(0)));
+    objects.retain(Object::is_bounded);
+    let level = Arc::new(Level::new(objects));
+    let instance = Object { content: Content::Level(level), transform: random.rotation(), material: None };
+    let mut objects = crowd(&mut random, 1, Some(MaterialId(1)));
+    objects.extend(objects.clone());
+    for place in [0, objects.len() / 2, objects.len()] {
+        objects.insert(place, instance.clone());
+    }
+    let world = world_of(objects);
+    equals_brute_force(&world, 200);
+    let shapes = world.geometry().shapes;
+    let mut random = Random::new(26);
+    let hits: Vec<WorldHit> =
+        (0..200).flat_map(|i| rays(&mut random, i, 8)).map(|mut ray| world.closest(&mut ray)).collect();
+    let last = hits.iter().filter(|hit| hit.is_some() && u64::from(hit.object) >= shapes * 2 / 3).count();
+    assert_eq!(last, 0, "of {}", hits.len());
 }
 
 /// A wavy square of 1,152 triangles.
@@ -197,7 +266,7 @@ fn instances_are_what_expanding_them_gives() {
     assert_eq!((flat.geometry().instances, world.geometry().instances), (0, 3 * 6 + 4 + 2));
     let (mut same, mut met) = (0, 0);
     for round in 0..400 {
-        for ray in rays(&mut random, round) {
+        for ray in rays(&mut random, round, 8) {
             let (hit, other) = (world.closest(&mut ray.clone()), flat.closest(&mut ray.clone()));
             met += usize::from(hit.is_some());
             if !hit.is_some() || hit.object != other.object || hit.hit.part != other.hit.part {
@@ -221,7 +290,7 @@ fn rays_leave_nested_surfaces() {
     let world = nested(&mut random);
     let mut left = 0;
     for round in 0..200 {
-        for ray in rays(&mut random, round) {
+        for ray in rays(&mut random, round, 8) {
             let hit = world.closest(&mut ray.clone());
             if !hit.is_some() {
                 continue;

@@ -1,13 +1,18 @@
 //! The questions that rays ask: what is nearest, is anything in the way, how much light gets through.
 
+use super::items::{Item, Placed};
 use super::large::Order;
-use super::{Level, World, WorldHit};
-use juggler_bvh::Leaf;
+use super::{Content, Level, World, WorldHit};
+use arrayvec::ArrayVec;
+use juggler_bvh::{Leaf, PACKET};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
 
 /// How often a shadow ray may cross transparent surfaces before it counts as blocked.
 const MAX_CROSSINGS: u32 = 64;
+
+/// So few rays of a packet go through an instance one by one.
+const ALONE: u32 = 2;
 
 /// Keeps the nearest hit of each ray of a call.
 struct Nearest<'a> {
@@ -30,6 +35,71 @@ impl Leaf for Nearest<'_> {
         let items = &self.level.items[range.start as usize..range.end as usize];
         items.iter().any(|item| item.occludes(&self.level.objects, ray))
     }
+
+    #[inline]
+    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], range: Range<u32>) {
+        let level = self.level;
+        for item in &level.items[range.start as usize..range.end as usize] {
+            match *item {
+                Item::Instance { place, number } if active.count_ones() > ALONE => {
+                    let hits = &mut self.hits[first..first + rays.len()];
+                    closest_together(&level.objects[place as usize], self.first + number, active, rays, hits);
+                }
+                _ => {
+                    for lane in lanes(active) {
+                        item.closest(&level.objects, &mut rays[lane], self.first, &mut self.hits[first + lane]);
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn any_many(&mut self, _first: usize, active: u32, rays: &[Ray], range: Range<u32>) -> u32 {
+        let (level, mut found) = (self.level, 0);
+        for item in &level.items[range.start as usize..range.end as usize] {
+            let active = active & !found;
+            match *item {
+                Item::Instance { place, .. } if active.count_ones() > ALONE => {
+                    found |= any_together(&level.objects[place as usize], active, rays);
+                }
+                _ => {
+                    for lane in lanes(active) {
+                        found |= u32::from(item.occludes(&level.objects, &rays[lane])) << lane;
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The lanes whose bits are set.
+#[inline]
+fn lanes(active: u32) -> impl Iterator<Item = usize> {
+    (0..PACKET).filter(move |lane| active >> lane & 1 != 0)
+}
+
+/// [`Placed::closest`] for the active rays of a packet, which stay together in an instance.
+#[inline(never)]
+fn closest_together(placed: &Placed, number: u32, active: u32, rays: &mut [Ray], hits: &mut [WorldHit]) {
+    let Content::Level(level) = &placed.content else { return };
+    let mut local: ArrayVec<Ray, PACKET> = lanes(active).map(|lane| placed.local(&rays[lane])).collect();
+    let mut best: ArrayVec<WorldHit, PACKET> = lanes(active).map(|lane| hits[lane]).collect();
+    level.improve(&mut local, Order::Coherent, number, &mut best);
+    for (lane, (local, best)) in lanes(active).zip(local.iter().zip(best)) {
+        (rays[lane].t_max, hits[lane]) = (local.t_max, best);
+    }
+}
+
+/// Which of the active rays of a packet meet anything in an instance.
+#[inline(never)]
+fn any_together(placed: &Placed, active: u32, rays: &[Ray]) -> u32 {
+    let Content::Level(level) = &placed.content else { return 0 };
+    let local: ArrayVec<Ray, PACKET> = lanes(active).map(|lane| placed.local(&rays[lane])).collect();
+    let mut occluded = [false; PACKET];
+    level.any(&local, Order::Coherent, &mut occluded[..local.len()]);
+    lanes(active).zip(occluded).fold(0, |found, (lane, occluded)| found | u32::from(occluded) << lane)
 }
 
 impl Level {
@@ -38,9 +108,7 @@ impl Level {
     pub(super) fn improve(&self, rays: &mut [Ray], order: Order, first: u32, hits: &mut [WorldHit]) {
         for place in &self.unbounded {
             let (placed, number) = (&self.objects[*place as usize], first + self.first(*place));
-            for (ray, best) in rays.iter_mut().zip(&mut *hits) {
-                placed.closest(ray, number, best);
-            }
+            placed.closest_each(rays, number, hits);
         }
         let mut nearest = Nearest { level: self, first, hits };
         match order {
