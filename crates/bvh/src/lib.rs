@@ -2,7 +2,8 @@
 //! ranges of items out.
 //!
 //! [`Bvh`] is a tree eight wide over anything that has a box; a [`Leaf`] visitor tests the items.
-//! [`TriangleBvh`] holds triangles and tests them itself, watertight. The crate's `README.md` explains the
+//! [`TriangleBvh`] holds triangles and tests them itself, watertight. [`MovingBvh`] and [`MovingTriangleBvh`] are the same
+//! for what moves while the shutter is open. The crate's `README.md` explains the
 //! layout and the three ways to trace: one ray, a batch of unrelated rays, a packet of coherent ones.
 //!
 //! ```
@@ -53,15 +54,15 @@ mod triangles;
 
 pub use build::{BuildOptions, BuildStats, MAX_ITEMS, Quality, RefitError};
 pub use inspect::Visits;
+pub use moving::MovingBvh;
 pub use packet::PACKET;
 pub use triangle::{TriangleTest, intersect_triangle};
-pub use triangles::{Filtered, TriangleBvh, TriangleError, TriangleHit};
+pub use triangles::{Filtered, MovingTriangleBvh, TriangleBvh, TriangleError, TriangleHit};
 
 /// A kind of vector unit, known to be there.
 pub use fearless_simd::Level as SimdLevel;
 
 use juggler_math::{Aabb, Ray};
-use moving::Motion;
 use node::Node;
 use pages::Pages;
 use std::ops::Range;
@@ -71,8 +72,6 @@ use std::ops::Range;
 pub struct Bvh {
     /// The root is node 0; there is always one.
     nodes: Pages<Node>,
-    /// Where things move, the boxes at shutter open and close beside each node; else nothing.
-    motion: Pages<Motion>,
     order: Vec<u32>,
     bounds: Aabb,
     stats: BuildStats,
@@ -152,6 +151,6 @@ impl Bvh {
 
     /// Bytes of memory that the tree holds, without the items.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.nodes.bytes() + self.motion.bytes() + self.order.capacity() * size_of::<u32>()
+        size_of::<Self>() + self.nodes.bytes() + self.order.capacity() * size_of::<u32>()
     }
 }

@@ -2,32 +2,36 @@
 //! and the boxes between are interpolated (Glassner 1988, "Spacetime Ray Tracing for Animation"; as in Embree).
 
 use crate::build::{Extent, extent, refit};
-use crate::node::{Node, WIDTH};
+use crate::lanes::Lanes;
+use crate::node::{Bounds, Child, Node, WIDTH, meet};
 use crate::pages::Pages;
-use crate::{Bvh, Quality};
+use crate::single::{Boxes, any_below, closest_below};
+use crate::slabs::Slabs;
+use crate::stack::Stack;
+use crate::{BuildOptions, BuildStats, Bvh, Leaf, Quality, SimdLevel};
 use bytemuck::{Pod, Zeroable};
-use juggler_math::{Aabb, Vec3};
+use fearless_simd::{dispatch, f32x8};
+use juggler_math::{Aabb, Ray, Vec3};
 use rayon::prelude::*;
 
-/// The boxes of a node's children at shutter open and close: `bounds[time][axis][min/max][slot]`.
+/// The boxes of a node's children at shutter open and close.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub(crate) struct Motion {
-    pub bounds: [[[[f32; WIDTH]; 2]; 3]; 2],
+struct Motion {
+    ends: [Bounds; 2],
 }
 
 impl Motion {
     /// The boxes at a time between 0 (open) and 1 (close). Every step is monotonic in the bounds, so that a
     /// box that contains another at both ends contains it at every time, with all rounding.
     #[inline(always)]
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the kernels of moving trees"))]
-    pub fn at(&self, time: f32) -> [[[f32; WIDTH]; 2]; 3] {
+    fn at(&self, time: f32) -> Bounds {
         let mut bounds = [[[0.0; WIDTH]; 2]; 3];
         for (axis, sides) in bounds.iter_mut().enumerate() {
             for (side, values) in sides.iter_mut().enumerate() {
-                let (open, close) = (&self.bounds[0][axis][side], &self.bounds[1][axis][side]);
+                let (open, close) = (&self.ends[0][axis][side], &self.ends[1][axis][side]);
                 for slot in 0..WIDTH {
-                    values[slot] = open[slot] * (1.0 - time) + close[slot] * time;
+                    values[slot] = between(open[slot], close[slot], time);
                 }
             }
         }
@@ -35,35 +39,136 @@ impl Motion {
     }
 }
 
-impl Bvh {
-    /// Builds a tree over boxes that move linearly: item `i` has box `boxes[i][0]` at shutter open and
-    /// `boxes[i][1]` at shutter close, and what it holds at a time between lies in the box between. The nodes
-    /// hold the boxes of the whole time, so that every way to trace is right, and beside them those at both
-    /// ends. An item that is empty or has a NaN at one end is left out. Otherwise as [`Bvh::build`].
-    pub fn build_moving(boxes: &[[Aabb; 2]], quality: Quality) -> Self {
-        let mut bvh = Self::build(&boxes.par_iter().map(whole).collect::<Vec<_>>(), quality);
-        let ends = [0, 1].map(|end| bvh.nodes_at(|item| wide(boxes[item][end])));
-        let mut motion: Pages<Motion> = Pages::zeroed(bvh.nodes.len());
-        motion.par_iter_mut().enumerate().for_each(|(i, motion)| {
-            motion.bounds = [bounds_of(&ends[0][i]), bounds_of(&ends[1][i])];
-        });
-        bvh.motion = motion;
-        bvh
+/// What all that moves goes by, so that what encloses something at both ends does so at every time.
+#[inline(always)]
+pub(crate) fn between(open: f32, close: f32, time: f32) -> f32 {
+    open * (1.0 - time) + close * time
+}
+
+/// A tree of boxes that move linearly while the shutter is open, eight wide. The calls are those of [`Bvh`] for one ray,
+/// with the boxes at the ray's time; a still tree has no part in it.
+#[derive(Clone, Debug)]
+pub struct MovingBvh {
+    /// Its boxes are those of all the time.
+    pub(crate) bvh: Bvh,
+    motion: Pages<Motion>,
+    shutter: f32,
+}
+
+impl MovingBvh {
+    /// Builds a tree over boxes that move linearly: item `i` has box `boxes[i][0]` when the shutter opens and
+    /// `boxes[i][1]` when it closes, `shutter` seconds later; what it holds at a time between lies in the box between.
+    /// Rays of other times see what is there at the nearer end. The shape of the tree is that over the boxes of the
+    /// whole time. An item that is empty or has a NaN at one end is left out. Otherwise as [`Bvh::build`].
+    pub fn build(boxes: &[[Aabb; 2]], shutter: f32, quality: Quality) -> Self {
+        Self::build_with(boxes, shutter, &quality.into())
     }
 
-    /// The nodes with other boxes.
-    fn nodes_at(&self, bounds: impl Fn(usize) -> Aabb + Sync) -> Pages<Node> {
-        let mut nodes = self.nodes.clone();
-        refit(&mut nodes, |leaf| {
-            let items = &self.order[leaf.items().start as usize..leaf.items().end as usize];
-            items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(&bounds(item as usize))))
+    /// [`MovingBvh::build`] with the leaf's size and cost chosen.
+    pub fn build_with(boxes: &[[Aabb; 2]], shutter: f32, options: &BuildOptions) -> Self {
+        let bvh = Bvh::build_with(&boxes.par_iter().map(whole).collect::<Vec<_>>(), options);
+        let ends = [0, 1].map(|end| nodes_with(&bvh, |item| wide(boxes[item][end])));
+        let mut motion: Pages<Motion> = Pages::zeroed(bvh.nodes.len());
+        motion.par_iter_mut().enumerate().for_each(|(i, motion)| {
+            motion.ends = [bounds_of(&ends[0][i]), bounds_of(&ends[1][i])];
         });
-        nodes
+        Self { bvh, motion, shutter }
+    }
+
+    /// [`Bvh::closest`] among the boxes at the ray's time.
+    pub fn closest(&self, ray: &mut Ray, leaf: &mut impl Leaf) {
+        dispatch!(self.bvh.level, simd => self.closest_one(simd, ray, leaf));
+    }
+
+    /// [`Bvh::any`] among the boxes at the ray's time.
+    pub fn any(&self, ray: &Ray, leaf: &mut impl Leaf) -> bool {
+        dispatch!(self.bvh.level, simd => self.any_one(simd, ray, leaf))
+    }
+
+    #[inline(always)]
+    pub(crate) fn closest_one<S: Lanes>(&self, simd: S, ray: &mut Ray, leaf: &mut impl Leaf) {
+        let (boxes, mut slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
+        closest_below(simd, boxes, Child::ROOT, &mut Stack::new(), (0, ray), &mut slabs, leaf);
+    }
+
+    #[inline(always)]
+    pub(crate) fn any_one<S: Lanes>(&self, simd: S, ray: &Ray, leaf: &mut impl Leaf) -> bool {
+        let (boxes, slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
+        any_below(simd, boxes, Child::ROOT, &mut Stack::new(), (0, ray), &slabs, leaf)
+    }
+
+    /// The ray's time as a share of the time that the shutter is open, 0 to 1.
+    #[inline(always)]
+    pub(crate) fn share(&self, ray: &Ray) -> f32 {
+        let share = ray.time / self.shutter;
+        // Not a number where the shutter opens for no time.
+        if share > 0.0 { share.min(1.0) } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn boxes(&self, ray: &Ray) -> MovingBoxes<'_> {
+        MovingBoxes { nodes: &self.bvh.nodes, motion: &self.motion, time: self.share(ray) }
+    }
+
+    /// [`Bvh::order`].
+    pub fn order(&self) -> &[u32] {
+        self.bvh.order()
+    }
+
+    /// The box of everything in the tree over all the time; empty when nothing is.
+    pub fn bounds(&self) -> Aabb {
+        self.bvh.bounds()
+    }
+
+    /// What the build made; the cost is that of the boxes of all the time.
+    pub fn stats(&self) -> &BuildStats {
+        self.bvh.stats()
+    }
+
+    /// Bytes of memory that the tree holds, without the items.
+    pub fn bytes(&self) -> usize {
+        self.bvh.bytes() + self.motion.bytes()
+    }
+
+    /// [`Bvh::with_simd_level`].
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.bvh = self.bvh.with_simd_level(level);
+        self
     }
 }
 
+/// The boxes at one time.
+#[derive(Clone, Copy)]
+struct MovingBoxes<'a> {
+    nodes: &'a [Node],
+    motion: &'a [Motion],
+    time: f32,
+}
+
+impl Boxes for MovingBoxes<'_> {
+    #[inline(always)]
+    fn node(&self, number: usize) -> &Node {
+        &self.nodes[number]
+    }
+
+    #[inline(always)]
+    fn test<S: Lanes>(&self, simd: S, number: usize, slabs: &Slabs) -> (u32, f32x8<S>) {
+        meet(simd, &self.motion[number].at(self.time), slabs)
+    }
+}
+
+/// The nodes with the boxes that their items have at one end.
+fn nodes_with(bvh: &Bvh, bounds: impl Fn(usize) -> Aabb + Sync) -> Pages<Node> {
+    let mut nodes = bvh.nodes.clone();
+    refit(&mut nodes, |leaf| {
+        let items = &bvh.order[leaf.items().start as usize..leaf.items().end as usize];
+        items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(&bounds(item as usize))))
+    });
+    nodes
+}
+
 /// The bounds of a node; those of free slots finite, for infinity times zero is not a number.
-fn bounds_of(node: &Node) -> [[[f32; WIDTH]; 2]; 3] {
+fn bounds_of(node: &Node) -> Bounds {
     node.bounds.map(|sides| sides.map(|values| values.map(|value| value.clamp(-f32::MAX, f32::MAX))))
 }
 
@@ -82,77 +187,4 @@ fn wide(bounds: Aabb) -> Aabb {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use juggler_math::hash;
-
-    const TIMES: [f32; 7] = [0.0, 1e-7, 0.25, 1.0 / 3.0, 0.5, 0.999_999_9, 1.0];
-
-    fn boxes(count: u32) -> Vec<[Aabb; 2]> {
-        let unit = |i: u32, k: u32| hash::unit_f32(hash::mix(hash::combine(i, k))) * 2.0 - 1.0;
-        let point = |i: u32, k: u32| Vec3::new(unit(i, k), unit(i, k + 1), unit(i, k + 2));
-        let end = |i: u32, k: u32| {
-            let center = point(i, k) * 10.0;
-            Aabb::from_points([center + point(i, k + 3) * 0.3, center + point(i, k + 6) * 0.3])
-        };
-        (0..count).map(|i| if i == 3 { [Aabb::EMPTY, end(i, 0)] } else { [end(i, 0), end(i, 9)] }).collect()
-    }
-
-    fn contains(bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize, low: [f64; 3], high: [f64; 3]) -> bool {
-        let sides = bounds.map(|sides| sides.map(|values| f64::from(values[slot])));
-        (0..3).all(|axis| sides[axis][0] <= low[axis] && high[axis] <= sides[axis][1])
-    }
-
-    /// A slot's box.
-    fn slot_of(bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize) -> ([f64; 3], [f64; 3]) {
-        let side = |side: usize| bounds.map(|sides| f64::from(sides[side][slot]));
-        (side(0), side(1))
-    }
-
-    /// The boxes of a node's slots against what hangs below.
-    fn check(bvh: &Bvh, boxes: &[[Aabb; 2]], number: usize, time: f32) {
-        let node = &bvh.nodes[number];
-        let bounds = bvh.motion[number].at(time);
-        for slot in 0..WIDTH {
-            let (low, high) = slot_of(&bounds, slot);
-            if slot >= node.count as usize {
-                assert!((0..3).all(|axis| low[axis] > high[axis]), "a free slot is met");
-                continue;
-            }
-            let child = node.children[slot];
-            if child.is_leaf() {
-                for position in child.items() {
-                    let [open, close] = boxes[bvh.order[position as usize] as usize];
-                    let between = |a: Vec3, b: Vec3| a.as_dvec3().lerp(b.as_dvec3(), f64::from(time)).to_array();
-                    let (low, high) = (between(open.min, close.min), between(open.max, close.max));
-                    assert!(contains(&bounds, slot, low, high) && contains(&node.bounds, slot, low, high));
-                }
-            } else {
-                let below = bvh.motion[child.0 as usize].at(time);
-                for part in 0..bvh.nodes[child.0 as usize].count as usize {
-                    let (low, high) = slot_of(&below, part);
-                    assert!(contains(&bounds, slot, low, high));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn boxes_between_contain_what_moves_in_them() {
-        for count in [0, 1, 9, 3000] {
-            let boxes = boxes(count);
-            for quality in Quality::ALL {
-                let bvh = Bvh::build_moving(&boxes, quality);
-                assert_eq!((bvh.motion.len(), bvh.stats.left_out), (bvh.nodes.len(), usize::from(count > 3)));
-                for time in TIMES {
-                    (0..bvh.nodes.len()).for_each(|number| check(&bvh, &boxes, number, time));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn what_does_not_move_has_no_motion() {
-        assert_eq!(Bvh::build(&[Aabb { min: Vec3::ZERO, max: Vec3::ONE }], Quality::Balanced).motion.len(), 0);
-    }
-}
+mod tests;

@@ -51,13 +51,15 @@ impl Child {
     }
 }
 
+/// The boxes of a node's children: `bounds[axis][0]` are the minima, `bounds[axis][1]` the maxima. A slot without a child
+/// holds an empty box, which no ray meets.
+pub(crate) type Bounds = [[[f32; WIDTH]; 2]; 3];
+
 /// Boxes of up to eight children and the children.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// `bounds[axis][0]` are the minima of the boxes, `bounds[axis][1]` the maxima. A slot without a child
-    /// holds the empty box, which no ray meets.
-    pub bounds: [[[f32; WIDTH]; 2]; 3],
+    pub bounds: Bounds,
     pub children: [Child; WIDTH],
     /// How many of the slots are in use.
     pub count: u32,
@@ -87,19 +89,10 @@ impl Node {
         }
     }
 
-    /// Which boxes are met (bit per slot), and where each is entered.
+    /// [`meet`] with this node's boxes.
     #[inline(always)]
     pub fn test<S: Lanes>(&self, simd: S, slabs: &Slabs) -> (u32, f32x8<S>) {
-        let mut enter = simd.splat(slabs.t_min);
-        let mut leave = simd.splat(slabs.t_max);
-        for axis in 0..3 {
-            let (near, far) = self.planes(simd, axis, (slabs.signs >> axis) as usize);
-            let near = near.mul_add(simd.splat(slabs.inverse[axis]), simd.splat(slabs.near_offset[axis]));
-            let far = far.mul_add(simd.splat(slabs.far_inverse[axis]), simd.splat(slabs.far_offset[axis]));
-            enter = simd.most(near, enter);
-            leave = simd.least(far, leave);
-        }
-        (bits(enter.simd_le(leave)), enter)
+        meet(simd, &self.bounds, slabs)
     }
 
     /// Which boxes any ray of a bundle may meet (bit per slot), and where the first could enter.
@@ -108,7 +101,7 @@ impl Node {
         let mut enter = simd.splat(bundle.t_min);
         let mut leave = simd.splat(bundle.t_max);
         for axis in 0..3 {
-            let (near, far) = self.planes(simd, axis, bundle.side[axis]);
+            let (near, far) = planes(simd, &self.bounds[axis], bundle.side[axis]);
             let near = (near - bundle.near_origin[axis]) * bundle.near_inverse[axis];
             let far = (far - bundle.far_origin[axis]) * bundle.far_inverse[axis];
             // In this order, so that a NaN leaves the range as it is.
@@ -117,13 +110,27 @@ impl Node {
         }
         (bits(enter.simd_le(leave)), enter)
     }
+}
 
-    /// Near and far planes along an axis.
-    #[inline(always)]
-    fn planes<S: Lanes>(&self, simd: S, axis: usize, side: usize) -> (f32x8<S>, f32x8<S>) {
-        let planes = &self.bounds[axis];
-        (simd.load(&planes[side & 1]), simd.load(&planes[side & 1 ^ 1]))
+/// Which boxes are met (bit per slot), and where each is entered.
+#[inline(always)]
+pub(crate) fn meet<S: Lanes>(simd: S, bounds: &Bounds, slabs: &Slabs) -> (u32, f32x8<S>) {
+    let mut enter = simd.splat(slabs.t_min);
+    let mut leave = simd.splat(slabs.t_max);
+    for (axis, sides) in bounds.iter().enumerate() {
+        let (near, far) = planes(simd, sides, (slabs.signs >> axis) as usize);
+        let near = near.mul_add(simd.splat(slabs.inverse[axis]), simd.splat(slabs.near_offset[axis]));
+        let far = far.mul_add(simd.splat(slabs.far_inverse[axis]), simd.splat(slabs.far_offset[axis]));
+        enter = simd.most(near, enter);
+        leave = simd.least(far, leave);
     }
+    (bits(enter.simd_le(leave)), enter)
+}
+
+/// Near and far planes along an axis.
+#[inline(always)]
+fn planes<S: Lanes>(simd: S, sides: &[[f32; WIDTH]; 2], side: usize) -> (f32x8<S>, f32x8<S>) {
+    (simd.load(&sides[side & 1]), simd.load(&sides[side & 1 ^ 1]))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 use crate::lanes::{Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
-use crate::single::nearest;
+use crate::single::{any_below, closest_below, nearest};
 use crate::slabs::{Bundle, Extent, Slabs};
 use crate::stack::{Stack, distance};
 use crate::{Bvh, Leaf};
@@ -200,7 +200,7 @@ impl Bvh {
             || {
                 for (lane, ray) in rays.iter_mut().enumerate() {
                     let mut slabs = Slabs::of_ray(simd, ray);
-                    self.closest_below(simd, Child::ROOT, stack, (first + lane, ray), &mut slabs, leaf);
+                    closest_below(simd, &*self.nodes, Child::ROOT, stack, (first + lane, ray), &mut slabs, leaf);
                 }
             },
         );
@@ -274,7 +274,7 @@ impl Bvh {
                 for (lane, ray) in rays.iter().enumerate() {
                     if active >> lane & 1 != 0 {
                         let slabs = Slabs::of_ray(simd, ray);
-                        let hit = self.any_below(simd, from, stack, (base + lane, ray), &slabs, leaf);
+                        let hit = any_below(simd, &*self.nodes, from, stack, (base + lane, ray), &slabs, leaf);
                         found |= u32::from(hit) << lane;
                     }
                 }

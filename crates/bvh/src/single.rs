@@ -5,7 +5,7 @@ use crate::node::{Child, Node};
 use crate::slabs::{Slabs, cull_distance};
 use crate::stack::{Stack, distance, entry};
 use crate::{Bvh, Leaf};
-use fearless_simd::dispatch;
+use fearless_simd::{dispatch, f32x8};
 use juggler_math::Ray;
 
 /// So many rays are made ready together: each is a chain of latencies, which then overlap.
@@ -44,7 +44,7 @@ impl Bvh {
             }
             for (lane, (ray, slabs)) in rays.iter_mut().zip(&mut ready).enumerate() {
                 let lane = number * AHEAD + lane;
-                self.closest_below(simd, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
+                closest_below(simd, &*self.nodes, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
             }
         }
     }
@@ -58,83 +58,103 @@ impl Bvh {
             }
             for (lane, ((ray, occluded), slabs)) in rays.iter().zip(occluded).zip(&ready).enumerate() {
                 let lane = number * AHEAD + lane;
-                *occluded = self.any_below(simd, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
+                *occluded = any_below(simd, &*self.nodes, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
             }
         }
     }
+}
 
-    /// Traces one ray through the subtree at `from`; what the stack holds already is left alone.
+/// The boxes of a tree's nodes, which may lie elsewhere than in the nodes.
+pub(crate) trait Boxes: Copy {
+    /// The node with this number.
+    fn node(&self, number: usize) -> &Node;
+
+    /// [`Node::test`] with its boxes.
+    fn test<S: Lanes>(&self, simd: S, number: usize, slabs: &Slabs) -> (u32, f32x8<S>);
+}
+
+impl Boxes for &[Node] {
     #[inline(always)]
-    pub(crate) fn closest_below<S: Lanes>(
-        &self,
-        simd: S,
-        from: Child,
-        stack: &mut Stack,
-        (lane, ray): (usize, &mut Ray),
-        slabs: &mut Slabs,
-        leaf: &mut impl Leaf,
-    ) {
-        let (nodes, base) = (&*self.nodes, stack.len());
-        let mut current = from;
-        loop {
-            while !current.is_leaf() {
-                let node = &nodes[current.0 as usize];
-                let (mask, enter) = node.test(simd, slabs);
-                let next = nearest(
-                    mask,
-                    &enter.into(),
-                    stack,
-                    #[inline(always)]
-                    |slot| node.children[slot].0,
-                );
-                current = match next {
-                    Some(word) => Child(word),
-                    None => match next_below(stack, base, slabs.t_max) {
-                        Some(child) => child,
-                        None => return,
-                    },
-                };
-            }
-            leaf.closest(lane, ray, current.items());
-            slabs.t_max = cull_distance(ray.t_max);
-            let Some(next) = next_below(stack, base, slabs.t_max) else { return };
-            current = next;
-        }
+    fn node(&self, number: usize) -> &Node {
+        &self[number]
     }
 
-    /// Whether one ray hits something in the subtree at `from`; the stack is left as it was.
     #[inline(always)]
-    pub(crate) fn any_below<S: Lanes>(
-        &self,
-        simd: S,
-        from: Child,
-        stack: &mut Stack,
-        (lane, ray): (usize, &Ray),
-        slabs: &Slabs,
-        leaf: &mut impl Leaf,
-    ) -> bool {
-        let (nodes, base) = (&*self.nodes, stack.len());
-        let mut current = from;
-        loop {
-            while !current.is_leaf() {
-                let node = &nodes[current.0 as usize];
-                let (mask, _) = node.test(simd, slabs);
-                let next = first(node, mask, stack);
-                let Some(next) = next.or_else(
-                    #[inline(always)]
-                    || next_below(stack, base, f32::INFINITY),
-                ) else {
-                    return false;
-                };
-                current = next;
-            }
-            if leaf.any(lane, ray, current.items()) {
-                stack.truncate(base);
-                return true;
-            }
-            let Some(next) = next_below(stack, base, f32::INFINITY) else { return false };
+    fn test<S: Lanes>(&self, simd: S, number: usize, slabs: &Slabs) -> (u32, f32x8<S>) {
+        self[number].test(simd, slabs)
+    }
+}
+
+/// Traces one ray through the subtree at `from`; what the stack holds already is left alone.
+#[inline(always)]
+pub(crate) fn closest_below<S: Lanes>(
+    simd: S,
+    boxes: impl Boxes,
+    from: Child,
+    stack: &mut Stack,
+    (lane, ray): (usize, &mut Ray),
+    slabs: &mut Slabs,
+    leaf: &mut impl Leaf,
+) {
+    let base = stack.len();
+    let mut current = from;
+    loop {
+        while !current.is_leaf() {
+            let (mask, enter) = boxes.test(simd, current.0 as usize, slabs);
+            let node = boxes.node(current.0 as usize);
+            let next = nearest(
+                mask,
+                &enter.into(),
+                stack,
+                #[inline(always)]
+                |slot| node.children[slot].0,
+            );
+            current = match next {
+                Some(word) => Child(word),
+                None => match next_below(stack, base, slabs.t_max) {
+                    Some(child) => child,
+                    None => return,
+                },
+            };
+        }
+        leaf.closest(lane, ray, current.items());
+        slabs.t_max = cull_distance(ray.t_max);
+        let Some(next) = next_below(stack, base, slabs.t_max) else { return };
+        current = next;
+    }
+}
+
+/// Whether one ray hits something in the subtree at `from`; the stack is left as it was.
+#[inline(always)]
+pub(crate) fn any_below<S: Lanes>(
+    simd: S,
+    boxes: impl Boxes,
+    from: Child,
+    stack: &mut Stack,
+    (lane, ray): (usize, &Ray),
+    slabs: &Slabs,
+    leaf: &mut impl Leaf,
+) -> bool {
+    let base = stack.len();
+    let mut current = from;
+    loop {
+        while !current.is_leaf() {
+            let (mask, _) = boxes.test(simd, current.0 as usize, slabs);
+            let next = first(boxes.node(current.0 as usize), mask, stack);
+            let Some(next) = next.or_else(
+                #[inline(always)]
+                || next_below(stack, base, f32::INFINITY),
+            ) else {
+                return false;
+            };
             current = next;
         }
+        if leaf.any(lane, ray, current.items()) {
+            stack.truncate(base);
+            return true;
+        }
+        let Some(next) = next_below(stack, base, f32::INFINITY) else { return false };
+        current = next;
     }
 }
 

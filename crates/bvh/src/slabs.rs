@@ -29,7 +29,7 @@ pub(crate) const SLACK: f32 = 1.0 + 32.0 * f32::EPSILON;
 /// How much of its offset a plane may be off by: rounding of the inverse and of the offset, 2 ulp with room.
 const OFFSET: f32 = 4.0 * f32::EPSILON;
 
-/// One ray, ready for [`Node::test`](crate::node::Node::test): a plane at `p` is met at
+/// One ray, ready for [`meet`](crate::node::meet): a plane at `p` is met at
 /// `p * inverse + offset`, with both rounded to the safe side. The fourth of each four means nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Slabs {

@@ -6,7 +6,7 @@
 mod common;
 
 use common::Random;
-use common::mesh::{Kernels, Mesh, globe, rays_to_try};
+use common::mesh::{Kernels, Mesh, crossed, globe, is_divided, rays_to_try};
 use juggler_math::{Ray, Vec3, vec3};
 
 /// Rays a mesh and quality.
@@ -108,6 +108,31 @@ fn boxes() {
     leave_globe("box", &mesh, Vec3::ONE, Vec3::ZERO, 31);
     leave_globe("flat box", &mesh, vec3(1000.0, 0.001, 1000.0), vec3(1.0, 2.0, 3.0), 32);
     leave_globe("tiny box", &mesh, Vec3::splat(1e-15), Vec3::ZERO, 33);
+}
+
+/// A globe of long thin triangles askew, crossed by small and long ones: none of its edges lets a ray through where
+/// triangles are divided.
+#[test]
+fn divided() {
+    let random = &mut Random::new(50);
+    let mut mesh = globe(random, 3, 300, 0.0);
+    let (own, added) = (mesh.positions.len() as u32, crossed(random, 4000, 400));
+    // A turn about the space diagonal by an eighth or so: no triangle lies along an axis.
+    let turn =
+        |p: Vec3| vec3(0.8 * p.x - 0.6 * p.y, 0.48 * p.x + 0.64 * p.y - 0.6 * p.z, 0.36 * p.x + 0.48 * p.y + 0.8 * p.z);
+    mesh.positions.iter_mut().for_each(|p| *p = turn(*p));
+    mesh.positions.extend(&added.positions);
+    mesh.triangles.extend(added.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + own)));
+    assert!(is_divided(&mesh));
+    for (scale, offset, seed) in [(1.0, 0.0, 51), (1e-15, 0.0, 52), (1e15, 0.0, 53), (1.0, 1e3, 54)] {
+        leave_globe(
+            &format!("divided, scale {scale:e}, offset {offset}"),
+            &mesh,
+            Vec3::splat(scale),
+            Vec3::splat(offset),
+            seed,
+        );
+    }
 }
 
 /// Straight along the axes at the corners and edges of a box and of a globe.

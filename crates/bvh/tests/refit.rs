@@ -4,8 +4,9 @@
 
 mod common;
 
+use common::mesh::{Kernels, crossed, is_divided};
 use common::{Keep, Random, brute_force};
-use juggler_bvh::{Bvh, Quality, RefitError, TriangleBvh, TriangleError, intersect_triangle};
+use juggler_bvh::{Bvh, Quality, RefitError, TriangleBvh, TriangleError, intersect_triangle, simd_levels};
 use juggler_math::{Aabb, Ray, Vec3};
 
 fn boxes(random: &mut Random, count: usize) -> Vec<Aabb> {
@@ -121,5 +122,24 @@ fn the_same_triangles_change_nothing() {
         let before = format!("{bvh:?}");
         bvh.refit(&positions, &triangles).unwrap();
         assert!(before == format!("{bvh:?}"), "{quality:?}");
+    }
+}
+
+#[test]
+fn divided_triangles_are_found_where_they_are() {
+    let random = &mut Random::new(26);
+    let before = crossed(random, 1500, 150);
+    assert!(is_divided(&before));
+    let mut after = before.moved(Vec3::new(0.7, -1.2, 1.0), Vec3::splat(0.1));
+    after.positions[3] = Vec3::NAN;
+    let mut bvh = TriangleBvh::build(&before.positions, &before.triangles, Quality::Best).unwrap();
+    for mesh in [&after, &before] {
+        bvh.refit(&mesh.positions, &mesh.triangles).unwrap();
+        assert_eq!(bvh.stats().items, 1500);
+        let rays = rays(random, 300);
+        let expected: Vec<_> = rays.iter().map(|ray| mesh.closest(ray)).collect();
+        for level in simd_levels() {
+            Kernels::new("divided", &bvh, level).check(&rays, &expected);
+        }
     }
 }

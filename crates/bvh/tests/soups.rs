@@ -6,7 +6,7 @@
 mod common;
 
 use common::Random;
-use common::mesh::{Kernels, Mesh, rays_to_try};
+use common::mesh::{Kernels, Mesh, crossed, is_divided, rays_to_try};
 use common::rays::{Aim, cut};
 use juggler_bvh::{Quality, TriangleBvh, TriangleHit, TriangleTest, intersect_triangle, simd_levels};
 use juggler_math::{Ray, Vec3, vec3};
@@ -61,8 +61,15 @@ fn few_and_many_triangles() {
 #[test]
 fn the_fast_test_is_the_same_in_every_kernel() {
     let mesh = soup(77, 300, |random| near(random, 0.3));
-    let (aim, random) = (Aim::at(&mesh), &mut Random::new(78));
-    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Balanced).unwrap();
+    fast_is_the_same_in_every_kernel(&mesh, Quality::Balanced);
+    let mesh = crossed(&mut Random::new(79), 1500, 150);
+    assert!(is_divided(&mesh));
+    fast_is_the_same_in_every_kernel(&mesh, Quality::Best);
+}
+
+fn fast_is_the_same_in_every_kernel(mesh: &Mesh, quality: Quality) {
+    let (aim, random) = (Aim::at(mesh), &mut Random::new(78));
+    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, quality).unwrap();
     let tree = tree.with_test(TriangleTest::Fast);
     let (mut tried, mut off) = (0, 0);
     while tried < rays_to_try(SMALL) {
@@ -82,8 +89,14 @@ fn the_fast_test_is_the_same_in_every_kernel() {
 /// Hits that a filter refuses do not count, in any kernel: as if each ray had its own triangles.
 #[test]
 fn refused_hits_do_not_count() {
-    let mesh = soup(87, 120, |random| near(random, 0.5));
-    let (aim, random) = (Aim::at(&mesh), &mut Random::new(88));
+    refuse(&soup(87, 120, |random| near(random, 0.5)), Quality::Balanced);
+    let mesh = crossed(&mut Random::new(89), 1500, 150);
+    assert!(is_divided(&mesh));
+    refuse(&mesh, Quality::Best);
+}
+
+fn refuse(mesh: &Mesh, quality: Quality) {
+    let (aim, random) = (Aim::at(mesh), &mut Random::new(88));
     let counts = |ray: usize, hit: &TriangleHit| !(ray + hit.index as usize).is_multiple_of(3);
     let nearest = |number: usize, ray: &Ray| {
         let hits = (0..mesh.triangles.len()).filter_map(|index| {
@@ -94,7 +107,7 @@ fn refused_hits_do_not_count() {
         let hits = hits.filter(|hit| counts(number, hit));
         hits.min_by(|a, b| a.t.total_cmp(&b.t).then(a.index.cmp(&b.index)))
     };
-    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Balanced).unwrap();
+    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, quality).unwrap();
     let mut differ = 0;
     for round in 0..rays_to_try(SMALL) / 35 {
         let rays = aim.call(random);
@@ -232,6 +245,16 @@ fn a_hair_off_the_plane() {
         let expected = rays.map(|ray| mesh.closest(&ray));
         kernels.iter().for_each(|kernels| kernels.check(&rays[1..], &expected[1..]));
         kernels.iter().for_each(|kernels| kernels.check(&rays, &expected));
+    }
+}
+
+/// Long triangles among small ones: in the best quality they stand in several leaves.
+#[test]
+fn divided() {
+    for (scale, offset, seed) in [(1.0, 0.0, 0), (1e-6, 0.0, 1), (1e6, 0.0, 2), (1.0, 3e3, 3), (1.0, -1e4, 4)] {
+        let mesh = crossed(&mut Random::new(40 + seed), 1500, 150).moved(Vec3::splat(scale), Vec3::splat(offset));
+        assert!(is_divided(&mesh), "scale {scale:e}, offset {offset}");
+        check(&format!("divided, scale {scale:e}, offset {offset}"), &mesh, 140 + seed);
     }
 }
 

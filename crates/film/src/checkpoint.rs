@@ -220,8 +220,13 @@ mod tests {
         let noise = |level| Stop::Noise { level };
         let time = Stop::Time { seconds: 1.0 };
         for (before, now) in [
-            (Stop::Samples, Stop::Samples), (noise(0.1), noise(0.1)), (noise(0.1), noise(0.05)), (noise(0.1), Stop::Samples),
-            (time, Stop::Samples), (Stop::Samples, time), (noise(0.1), time),
+            (Stop::Samples, Stop::Samples),
+            (noise(0.1), noise(0.1)),
+            (noise(0.1), noise(0.05)),
+            (noise(0.1), Stop::Samples),
+            (time, Stop::Samples),
+            (Stop::Samples, time),
+            (noise(0.1), time),
         ] {
             assert_eq!(check_stop(before, now), Ok(()), "{before} {now}");
         }

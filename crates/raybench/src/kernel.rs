@@ -9,32 +9,32 @@ use juggler_math::Ray;
 /// Rays of one call that coherent kernels are given: a tile of pixels.
 const TILE: usize = 64;
 
-/// A tree with one of the triangle tests. A new test is one more line in [`TREES`].
+/// A triangle test. A new one is one more line in [`TESTS`].
 #[derive(Clone, Copy, Debug)]
-pub struct Tree {
-    /// What the test is called.
+pub struct Test {
+    /// What it is called.
     pub name: &'static str,
     /// Whether no ray slips between triangles that share an edge; decides what it is compared with.
     pub watertight: bool,
-    /// Builds the tree.
-    pub build: fn(&Mesh, Quality) -> Result<TriangleBvh, TriangleError>,
+    test: TriangleTest,
 }
 
-/// All trees.
-pub const TREES: &[Tree] = &[
-    Tree {
-        name: "watertight",
-        watertight: true,
-        build: |mesh, quality| TriangleBvh::build(&mesh.positions, &mesh.triangles, quality),
-    },
-    Tree {
-        name: "fast",
-        watertight: false,
-        build: |mesh, quality| {
-            TriangleBvh::build(&mesh.positions, &mesh.triangles, quality).map(|tree| tree.with_test(TriangleTest::Fast))
-        },
-    },
+/// All triangle tests.
+pub const TESTS: [Test; 2] = [
+    Test { name: "watertight", watertight: true, test: TriangleTest::Watertight },
+    Test { name: "fast", watertight: false, test: TriangleTest::Fast },
 ];
+
+/// Builds the tree of a mesh.
+pub fn build(mesh: &Mesh, quality: Quality) -> Result<TriangleBvh, TriangleError> {
+    TriangleBvh::build(&mesh.positions, &mesh.triangles, quality)
+}
+
+/// The tree with each of the triangle tests: a copy each, because they are traced in turns.
+pub fn with_tests(tree: TriangleBvh) -> [(Test, TriangleBvh); 2] {
+    let ([first, second], copy) = (TESTS, tree.clone());
+    [(first, tree.with_test(first.test)), (second, copy.with_test(second.test))]
+}
 
 /// A way to ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

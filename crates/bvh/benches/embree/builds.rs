@@ -6,7 +6,7 @@ use crate::targets::Targets;
 use juggler_bvh::Quality;
 use juggler_raybench::Mesh;
 use juggler_raybench::clock::{Elapsed, Of, Stopwatch};
-use juggler_raybench::kernel::TREES;
+use juggler_raybench::kernel;
 use juggler_raybench::measure::median;
 
 /// Times of one build, repeat by repeat, and the bytes of the tree.
@@ -39,32 +39,27 @@ fn compare(
     targets: &mut Targets,
 ) -> Result<(), String> {
     let threads = pool.current_num_threads();
-    let (mut theirs, mut ours) = (Times::default(), TREES.iter().map(|_| Times::default()).collect::<Vec<_>>());
+    let (mut theirs, mut ours) = (Times::default(), Times::default());
     for _ in 0..repeats {
         let (scene, elapsed) = device.build(quality, false)?;
         (theirs.bytes, _) = (scene.bytes, theirs.elapsed.push(elapsed));
-        for (tree, times) in TREES.iter().zip(&mut ours) {
-            let build = || {
-                let watch = Stopwatch::start(Of::Process);
-                ((tree.build)(mesh, quality), watch.elapsed())
-            };
-            let (bvh, elapsed) = pool.install(build);
-            times.bytes = bvh.map_err(|error| error.to_string())?.bytes();
-            times.elapsed.push(elapsed);
-        }
+        let (bvh, elapsed) = pool.install(|| {
+            let watch = Stopwatch::start(Of::Process);
+            (kernel::build(mesh, quality), watch.elapsed())
+        });
+        ours.bytes = bvh.map_err(|error| error.to_string())?.bytes();
+        ours.elapsed.push(elapsed);
     }
     let per_triangle = |bytes: usize| bytes as f64 / mesh.triangles.len() as f64;
     print(&format!("Embree {quality:?}"), &theirs, per_triangle(theirs.bytes), None);
-    for (tree, times) in TREES.iter().zip(&ours) {
-        let pairs = theirs.elapsed.iter().zip(&times.elapsed);
-        // With one thread the processor's time is the steadier one; with more the wall's is what counts.
-        let speed = median(pairs.map(|(a, b)| if threads == 1 { a.cpu / b.cpu } else { a.wall / b.wall }));
-        print(&format!("Juggler {} {quality:?}", tree.name), times, per_triangle(times.bytes), Some(speed));
-        targets.add(&format!("build speed, {quality:?}, {threads} threads, {} tree", tree.name), speed);
-        if threads == 1 {
-            let smaller = theirs.bytes as f64 / times.bytes as f64;
-            targets.add(&format!("bytes a triangle, Embree's to ours, {quality:?}, {} tree", tree.name), smaller);
-        }
+    let pairs = theirs.elapsed.iter().zip(&ours.elapsed);
+    // With one thread the processor's time is the steadier one; with more the wall's is what counts.
+    let speed = median(pairs.map(|(a, b)| if threads == 1 { a.cpu / b.cpu } else { a.wall / b.wall }));
+    print(&format!("Juggler {quality:?}"), &ours, per_triangle(ours.bytes), Some(speed));
+    targets.add(&format!("build speed, {quality:?}, {threads} threads"), speed);
+    if threads == 1 {
+        let smaller = theirs.bytes as f64 / ours.bytes as f64;
+        targets.add(&format!("bytes a triangle, Embree's to ours, {quality:?}"), smaller);
     }
     Ok(())
 }

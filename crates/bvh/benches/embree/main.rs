@@ -25,7 +25,7 @@ mod tracers;
 use check::Differences;
 use ffi::{Api, Device, Scene};
 use juggler_bvh::TriangleBvh;
-use juggler_raybench::kernel::TREES;
+use juggler_raybench::kernel;
 use juggler_raybench::meshes::Recipe;
 use juggler_raybench::{RaySet, rays};
 use options::{Call, Options};
@@ -65,15 +65,12 @@ fn scene(api: &Api, name: &str, recipe: &Recipe, options: &Options, targets: &mu
     let (fast, _) = device.build(options.quality, false)?;
     let (robust, _) = device.build(options.quality, true)?;
     println!("\n  answers of Juggler and of Embree {}", device.version());
-    let mut bvhs = Vec::new();
-    for tree in TREES {
-        bvhs.push((tree, (tree.build)(&mesh, options.quality).map_err(|error| error.to_string())?));
-    }
-    let Some((_, first)) = bvhs.first() else { return Ok(()) };
-    let mut sets = rays::make(&mesh, first, options.rays).to_vec();
+    let bvh = kernel::build(&mesh, options.quality).map_err(|error| error.to_string())?;
+    let mut sets = rays::make(&mesh, &bvh, options.rays).to_vec();
+    let bvhs = kernel::with_tests(bvh);
     sets.retain(|set| options.kinds.contains(&set.kind));
-    for (tree, bvh) in &bvhs {
-        differences(&sets, if tree.watertight { &robust } else { &fast }, bvh, tree.name);
+    for (test, bvh) in &bvhs {
+        differences(&sets, if test.watertight { &robust } else { &fast }, bvh, test.name);
     }
     let mut tracers = Vec::new();
     for (test, watertight, scene) in [("fast", false, &fast), ("robust", true, &robust)] {
@@ -81,9 +78,9 @@ fn scene(api: &Api, name: &str, recipe: &Recipe, options: &Options, targets: &mu
         let calls = Call::EMBREES.into_iter().filter(compared);
         tracers.extend(calls.map(|call| Tracer { test, watertight, call, tree: Tree::Embree(scene) }));
     }
-    for (tree, bvh) in &bvhs {
+    for (test, bvh) in &bvhs {
         let calls = options.calls.iter().copied();
-        let tracer = |call| Tracer { test: tree.name, watertight: tree.watertight, call, tree: Tree::Juggler(bvh) };
+        let tracer = |call| Tracer { test: test.name, watertight: test.watertight, call, tree: Tree::Juggler(bvh) };
         tracers.extend(calls.map(tracer));
     }
     rates::measure(&tracers, &sets, options, targets);

@@ -10,11 +10,12 @@ use crate::pages::Pages;
 use rayon::prelude::*;
 
 /// Deeper than this, sets are halved, so that 72 levels are never exceeded whatever the boxes are.
-const SAH_DEPTH: usize = 44;
+pub(super) const SAH_DEPTH: usize = 44;
 /// Sets up to this size are built by one thread.
-const TASK: usize = 1 << 14;
+pub(super) const TASK: usize = 1 << 14;
 /// Larger sets are cut into pieces of this size for several threads.
-const CHUNK: usize = 1 << 13;
+pub(super) const CHUNK: usize = 1 << 13;
+
 /// What decides the shape of the tree.
 #[derive(Clone, Copy)]
 pub(super) struct Settings {
@@ -24,6 +25,14 @@ pub(super) struct Settings {
     pub node_cost: f32,
     /// Sets up to this size are halved as they lie: they will mostly be one wide node.
     pub careless: usize,
+}
+
+impl Settings {
+    /// Whether a cut is cheaper than a leaf. Boxes without area have a cost of NaN and become leaves too.
+    pub fn pays(&self, count: usize, cost: f32) -> bool {
+        let blocks = self.block.of(wide::i32x4::splat(count as i32)).to_array()[0];
+        self.node_cost + cost < blocks
+    }
 }
 
 /// The binary tree, empty when there are no items, and the numbers of the items in leaf order.
@@ -41,13 +50,13 @@ pub(super) fn build(mut items: Items, settings: &Settings) -> (Pages<BinaryNode>
 
 /// A set of items on its way into a subtree: the items, as much room for them to be moved to, where their
 /// numbers go in leaf order, the position of the first in the order of all, and how deep the set lies.
-struct Set<'a> {
-    items: &'a mut [Item],
-    room: &'a mut [Item],
-    order: &'a mut [u32],
-    first: usize,
-    around: Around,
-    depth: usize,
+pub(super) struct Set<'a> {
+    pub items: &'a mut [Item],
+    pub room: &'a mut [Item],
+    pub order: &'a mut [u32],
+    pub first: usize,
+    pub around: Around,
+    pub depth: usize,
 }
 
 impl<'a> Set<'a> {
@@ -64,7 +73,7 @@ impl<'a> Set<'a> {
 }
 
 /// The subtree over a set of at least one item.
-fn subtree(set: Set<'_>, settings: &Settings) -> Subtree {
+pub(super) fn subtree(set: Set<'_>, settings: &Settings) -> Subtree {
     if set.items.len() <= TASK {
         return build_alone(set, settings);
     }
@@ -125,24 +134,36 @@ fn parts(items: &[Item]) -> (usize, [Around; 2]) {
 }
 
 fn build_alone(set: Set<'_>, settings: &Settings) -> Subtree {
-    let mut task = Task { settings, bins: Bins::EMPTY, nodes: Vec::with_capacity(set.items.len() / 2) };
-    let root = task.grow(set.items, set.first, &set.around, set.depth);
-    for (place, item) in set.order.iter_mut().zip(set.items) {
-        *place = item.number();
-    }
+    let Set { items, order, first, around, depth, .. } = set;
+    let mut task = Task::new(settings);
+    task.nodes.reserve(items.len() / 2);
+    let root = task.grow(items, first, &around, depth);
+    number(order, items);
     Subtree::new(root, task.nodes)
 }
 
-/// What one thread builds.
-struct Task<'a> {
-    settings: &'a Settings,
-    bins: Bins,
-    nodes: Vec<BinaryNode>,
+/// The numbers of the items, in leaf order.
+pub(super) fn number(order: &mut [u32], items: &[Item]) {
+    for (place, item) in order.iter_mut().zip(items) {
+        *place = item.number();
+    }
 }
 
-impl Task<'_> {
+/// What one thread builds.
+pub(super) struct Task<'a> {
+    settings: &'a Settings,
+    /// Of the last cut.
+    pub bins: Bins,
+    pub nodes: Vec<BinaryNode>,
+}
+
+impl<'a> Task<'a> {
+    pub fn new(settings: &'a Settings) -> Self {
+        Self { settings, bins: Bins::EMPTY, nodes: Vec::new() }
+    }
+
     /// Returns the root, appends what is below it.
-    fn grow(&mut self, items: &mut [Item], first: usize, around: &Around, depth: usize) -> BinaryNode {
+    pub fn grow(&mut self, items: &mut [Item], first: usize, around: &Around, depth: usize) -> BinaryNode {
         let Some((left, around_both)) = self.split(items, around, depth) else {
             return BinaryNode::new(around.bounds, first, items.len());
         };
@@ -167,20 +188,23 @@ impl Task<'_> {
         let found = self.cut(items, around, depth);
         if count <= self.settings.leaf_size {
             let (_, cut) = found?;
-            let blocks = self.settings.block.of(wide::i32x4::splat(count as i32)).to_array()[0];
-            // Boxes without area have a NaN here and become leaves too.
-            let pays = self.settings.node_cost + cut.cost < blocks;
-            if !pays {
+            if !self.settings.pays(count, cut.cost) {
                 return None;
             }
         }
-        let Some((mapping, cut)) = found else { return Some(halve(items, around)) };
-        let (left, [a, b]) = self.bins.sides(&mapping, &cut);
-        let [c, d] = partition::in_place(items, &Rule::new(&mapping, &cut));
-        Some((left, [Around { bounds: a, centers: c }, Around { bounds: b, centers: d }]))
+        Some(self.part(items, around, found))
     }
 
-    fn cut(&mut self, items: &[Item], around: &Around, depth: usize) -> Option<(Mapping, Cut)> {
+    /// Brings the items of the left side of the cut that was found last to the front; halves them where there is none.
+    pub fn part(&self, items: &mut [Item], around: &Around, found: Option<(Mapping, Cut)>) -> (usize, [Around; 2]) {
+        let Some((mapping, cut)) = found else { return halve(items, around) };
+        let (left, [a, b]) = self.bins.sides(&mapping, &cut);
+        let [c, d] = partition::in_place(items, &Rule::new(&mapping, &cut));
+        (left, [Around { bounds: a, centers: c }, Around { bounds: b, centers: d }])
+    }
+
+    /// The cheapest cut.
+    pub fn cut(&mut self, items: &[Item], around: &Around, depth: usize) -> Option<(Mapping, Cut)> {
         let mapping = Mapping::new(around.centers, items.len()).filter(|_| depth < SAH_DEPTH)?;
         self.bins.fill(&mapping, items);
         let cut = self.bins.best(&mapping, around.bounds, self.settings.block)?;

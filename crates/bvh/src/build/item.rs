@@ -28,6 +28,17 @@ impl Extent {
         Self { low: self.low.fast_min(point), high: self.high.fast_max(point) }
     }
 
+    /// What lies in both, maybe [nothing](Self::is_empty).
+    #[inline]
+    pub fn intersection(self, other: Self) -> Self {
+        Self { low: self.low.fast_max(other.low), high: self.high.fast_min(other.high) }
+    }
+
+    #[inline]
+    pub fn is_empty(self) -> bool {
+        self.low.simd_gt(self.high).to_bitmask() & 7 != 0
+    }
+
     /// Half the sides: those of the largest boxes do not fit.
     #[inline(always)]
     fn half_sides(self) -> [f32; 3] {
@@ -75,6 +86,12 @@ impl Item {
         usable.then(|| Self(Extent { low, high: f32x4::new([d, e, f, 0.0]) }))
     }
 
+    /// The same item, or a part of it, with another box.
+    pub fn with_extent(&self, extent: Extent) -> Self {
+        let ([a, b, c, _], number) = (extent.low.to_array(), self.0.low.as_array()[3]);
+        Self(Extent { low: f32x4::new([a, b, c, number]), high: extent.high })
+    }
+
     pub fn number(&self) -> u32 {
         self.0.low.as_array()[3].to_bits() & !NUMBER
     }
@@ -119,7 +136,7 @@ impl Around {
 pub(crate) struct Items {
     list: Pages<Item>,
     /// How many of the list are in use; the others lie behind.
-    count: usize,
+    pub count: usize,
     pub around: Around,
     pub left_out: usize,
 }

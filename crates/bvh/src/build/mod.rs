@@ -8,8 +8,10 @@ mod item;
 mod morton;
 mod partition;
 mod plan;
+mod planes;
 mod refit;
 mod reinsert;
+mod spatial;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
@@ -24,6 +26,7 @@ pub(crate) use item::{Extent, Items};
 use juggler_math::Aabb;
 pub use refit::RefitError;
 pub(crate) use refit::{extent, refit};
+pub(crate) use spatial::Divide;
 use std::convert::Infallible;
 
 /// Most items that a tree can hold.
@@ -47,7 +50,8 @@ pub enum Quality {
     Balanced,
     // Splitting large triangles beforehand (Karras, Aila 2013) was tried: with 25 % more references the cost fell
     // by 5 % for hair, rose by 3 to 13 % elsewhere.
-    /// As balanced, and many more subtrees are tried: for trees that live for minutes.
+    /// As balanced, and many more subtrees are tried; of triangles also a tree with spatial splits, where a triangle may
+    /// stand in several leaves, and the cheaper of the two is kept. For trees that live for minutes.
     Best,
 }
 
@@ -67,6 +71,14 @@ pub struct BuildOptions {
     pub block: usize,
 }
 
+impl BuildOptions {
+    fn settings(&self) -> Settings {
+        let block = self.block.clamp(1, LEAF_MAX).next_power_of_two();
+        let leaf_size = self.leaf_size.clamp(1, LEAF_MAX);
+        Settings { leaf_size, block: Blocks(block.trailing_zeros() as i32), node_cost: NODE_COST, careless: 0 }
+    }
+}
+
 impl From<Quality> for BuildOptions {
     /// Leaves of up to 8 items that are tested one by one.
     fn from(quality: Quality) -> Self {
@@ -77,15 +89,17 @@ impl From<Quality> for BuildOptions {
 /// What came out of a build.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildStats {
-    /// Boxes in the tree.
+    /// Items in the tree.
     pub items: usize,
-    /// Boxes left out because no ray can meet them: empty ones and those with a NaN.
+    /// Places in leaves: as many as items, or more where items stand in several leaves.
+    pub references: usize,
+    /// Items left out because no ray can meet their boxes: empty ones and those with a NaN.
     pub left_out: usize,
     /// Nodes of 256 bytes.
     pub nodes: usize,
     /// Nodes on the longest way from the root to a leaf.
     pub depth: usize,
-    /// `leaf_sizes[n]` leaves hold `n` items.
+    /// `leaf_sizes[n]` leaves hold `n` references.
     pub leaf_sizes: [usize; 9],
     /// Expected cost of a random ray: nodes and leaf blocks tested, each counted as one (MacDonald, Booth 1990).
     pub sah_cost: f64,
@@ -114,20 +128,29 @@ impl Bvh {
     }
 
     pub(crate) fn over(items: Items, options: &BuildOptions) -> Self {
-        let block = options.block.clamp(1, LEAF_MAX).next_power_of_two();
-        let leaf_size = options.leaf_size.clamp(1, LEAF_MAX);
-        let block_bits = Blocks(block.trailing_zeros() as i32);
-        let settings = Settings { leaf_size, block: block_bits, node_cost: NODE_COST, careless: 0 };
-        let left_out = items.left_out;
-        let (binary, order) = match options.quality {
-            Quality::Fast => morton::build(items, leaf_size),
+        let (settings, left_out) = (options.settings(), items.left_out);
+        let built = match options.quality {
+            Quality::Fast => morton::build(items, settings.leaf_size),
             Quality::Balanced => reinsert::optimize(binned::build(items, &settings), SHARE_BALANCED),
             Quality::Best => reinsert::optimize(binned::build(items, &settings), SHARE_BEST),
         };
-        let (nodes, mut stats) = collapse::collapse(&binary, leaf_size, block);
-        stats.items = order.len();
+        Self::of_binary(built, &settings, left_out)
+    }
+
+    /// [`Bvh::over`], in best quality whatever is asked for; items may stand in several leaves.
+    pub(crate) fn divided(items: Items, options: &BuildOptions, divide: &impl Divide) -> Self {
+        let (settings, left_out, count) = (options.settings(), items.left_out, items.count);
+        let built = reinsert::optimize(spatial::build(items, &settings, divide), SHARE_BEST);
+        let mut bvh = Self::of_binary(built, &settings, left_out);
+        bvh.stats.items = count;
+        bvh
+    }
+
+    fn of_binary((binary, order): (Pages<BinaryNode>, Vec<u32>), settings: &Settings, left_out: usize) -> Self {
+        let (nodes, mut stats) = collapse::collapse(&binary, settings.leaf_size, 1 << settings.block.0);
+        (stats.items, stats.references) = (order.len(), order.len());
         stats.left_out = left_out;
         let bounds = binary.first().map_or(Aabb::EMPTY, BinaryNode::aabb);
-        Self { nodes, motion: Pages::zeroed(0), order, bounds, stats, level: fearless_simd::Level::new() }
+        Self { nodes, order, bounds, stats, level: fearless_simd::Level::new() }
     }
 }

@@ -3,7 +3,6 @@
 use super::item::{Extent, Item};
 use crate::Bvh;
 use crate::node::{Child, Node, WIDTH};
-use crate::pages::Pages;
 use juggler_math::Aabb;
 use rayon::prelude::*;
 use std::fmt;
@@ -42,7 +41,7 @@ impl std::error::Error for RefitError {}
 impl Bvh {
     /// Gives the items new boxes; item `i` has box `i`, as in [`Bvh::build`]. The tree keeps its shape, so
     /// rays take longer the more the items have moved; the same boxes as before change nothing. An item
-    /// whose box has become empty is not met. Nothing moves in it any more. Runs on the threads of the current rayon pool.
+    /// whose box has become empty is not met. Runs on the threads of the current rayon pool.
     pub fn refit(&mut self, boxes: &[Aabb]) -> Result<(), RefitError> {
         let usable = |item: usize| Item::new(&boxes[item], 0).is_some();
         self.check_refit(boxes.len(), self.order.iter().copied(), usable)?;
@@ -51,7 +50,6 @@ impl Bvh {
             let items = &order[leaf.items().start as usize..leaf.items().end as usize];
             items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(&boxes[item as usize])))
         });
-        self.motion = Pages::zeroed(0);
         self.update_cost();
         Ok(())
     }

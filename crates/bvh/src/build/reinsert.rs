@@ -189,7 +189,7 @@ impl<'a> Tree<'a> {
 }
 
 /// Nodes depth first, the items in the order of the leaves, and the depth.
-fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>, usize) {
+pub(super) fn relist(nodes: &[BinaryNode], order: &[u32]) -> (Pages<BinaryNode>, Vec<u32>, usize) {
     let mut pages = Pages::zeroed(nodes.len());
     let listed = &mut pages[..];
     let mut items = Vec::with_capacity(order.len());

@@ -22,18 +22,13 @@ impl TriangleBvh {
             return Err(TriangleError::TooMany { triangles: triangles.len() });
         }
         let mesh = Mesh { positions, triangles };
-        let items = Items::new(triangles.len(), |triangle| mesh.corners(triangle).map(bounds_of))?;
-        let mut bvh = Bvh::over(items, &BuildOptions { block: LANES, ..quality.into() });
+        let mut bvh = mesh.tree(quality)?;
         let leaves = number_leaves(&mut bvh.nodes);
         // The tree has no more use for the order; the triangles' numbers stand in the blocks.
         let order = std::mem::take(&mut bvh.order);
         let mut blocks = Pages::zeroed(leaves.len());
         blocks.par_iter_mut().zip(&leaves).with_min_len(CHUNK).try_for_each(|(block, leaf)| {
-            *block = Block::EMPTY;
-            let items = leaf.items();
-            for (lane, &triangle) in order[items.start as usize..items.end as usize].iter().enumerate() {
-                block.set(lane, triangle, mesh.corners(triangle as usize)?);
-            }
+            *block = mesh.block(&order[leaf.items().start as usize..leaf.items().end as usize])?;
             Ok::<_, TriangleError>(())
         })?;
         let in_flight = bvh.bytes() + blocks.bytes() > IN_CACHE;
@@ -41,7 +36,8 @@ impl TriangleBvh {
     }
 
     /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps
-    /// its shape, see [`Bvh::refit`]. After an error the tree is as it was.
+    /// its shape, see [`Bvh::refit`]. Where [spatial splits](Quality::Best) put a triangle into several leaves, each
+    /// takes the box of the whole triangle, so that even the same vertices make rays take longer. After an error the tree is as it was.
     pub fn refit(&mut self, positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), TriangleError> {
         let mesh = Mesh { positions, triangles };
         let numbers = (0..triangles.len()).into_par_iter().with_min_len(CHUNK);
@@ -60,6 +56,10 @@ impl TriangleBvh {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
+
+#[cfg(test)]
 impl TriangleBvh {
     pub(crate) fn same_bits(&self, other: &Self) -> bool {
         *self.bvh.nodes == *other.bvh.nodes && *self.blocks == *other.blocks && self.bvh.stats == other.bvh.stats
@@ -68,7 +68,7 @@ impl TriangleBvh {
 
 /// Makes each leaf's range start at the number of the leaf instead of a position; returns the leaves as they
 /// were.
-fn number_leaves(nodes: &mut [Node]) -> Vec<Child> {
+pub(super) fn number_leaves(nodes: &mut [Node]) -> Vec<Child> {
     let leaves = |node: &Node| node.children[..node.count as usize].iter().filter(|child| child.is_leaf()).count();
     let counts: Vec<usize> = nodes.par_chunks(CHUNK).map(|nodes| nodes.iter().map(leaves).sum()).collect();
     let mut old = vec![Child::ROOT; counts.iter().sum()];
@@ -91,13 +91,28 @@ fn number_leaves(nodes: &mut [Node]) -> Vec<Child> {
 }
 
 #[derive(Clone, Copy)]
-struct Mesh<'a> {
-    positions: &'a [Vec3],
-    triangles: &'a [[u32; 3]],
+pub(super) struct Mesh<'a> {
+    pub positions: &'a [Vec3],
+    pub triangles: &'a [[u32; 3]],
 }
 
 impl Mesh<'_> {
-    fn corners(&self, triangle: usize) -> Result<[Vec3; 3], TriangleError> {
+    fn items(&self) -> Result<Items, TriangleError> {
+        Items::new(self.triangles.len(), |triangle| self.corners(triangle).map(bounds_of))
+    }
+
+    /// Of best quality the cheaper of two, with and without divided triangles.
+    fn tree(&self, quality: Quality) -> Result<Bvh, TriangleError> {
+        let options = BuildOptions { block: LANES, ..quality.into() };
+        let whole = Bvh::over(self.items()?, &options);
+        if quality != Quality::Best {
+            return Ok(whole);
+        }
+        let divided = Bvh::divided(self.items()?, &options, self);
+        Ok(if divided.stats.sah_cost < whole.stats.sah_cost { divided } else { whole })
+    }
+
+    pub fn corners(&self, triangle: usize) -> Result<[Vec3; 3], TriangleError> {
         let mut corners = [Vec3::ZERO; 3];
         for (corner, &vertex) in corners.iter_mut().zip(&self.triangles[triangle]) {
             let vertices = self.positions.len();
@@ -105,6 +120,15 @@ impl Mesh<'_> {
             *corner = *self.positions.get(vertex as usize).ok_or_else(missing)?;
         }
         Ok(corners)
+    }
+
+    /// The block of a leaf that holds these triangles.
+    pub fn block(&self, triangles: &[u32]) -> Result<Block, TriangleError> {
+        let mut block = Block::EMPTY;
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            block.set(lane, triangle, self.corners(triangle as usize)?);
+        }
+        Ok(block)
     }
 
     /// Gives a block's triangles their new corners; returns the box around them.
@@ -121,17 +145,23 @@ impl Mesh<'_> {
     }
 }
 
-/// The box of a triangle, empty when it can never be hit. A little larger than needed: the triangle's test
-/// rounds the vertices in the ray's frame by up to 4 half ulps of the triangle's size more than the box's
-/// test allows for, and a ray that the test gives to this triangle must not miss its box.
+/// The box of a triangle, empty when it can never be hit.
 fn bounds_of(corners: [Vec3; 3]) -> Aabb {
-    if !has_area(corners) {
-        return Aabb::EMPTY;
-    }
-    let bounds = Aabb::from_points(corners);
-    let bounds = bounds.grown(bounds.extent().max_element() * (4.0 * f32::EPSILON));
+    if has_area(corners) { around(corners) } else { Aabb::EMPTY }
+}
+
+/// A box a little larger than needed around three corners: the triangle's test rounds the vertices in the ray's frame by
+/// up to 4 half ulps of the triangle's size more than the box's test allows for, and a ray that the test gives to this
+/// triangle must not miss its box.
+pub(super) fn around(corners: [Vec3; 3]) -> Aabb {
+    let bounds = Aabb::from_points(corners).grown(margin_of(corners));
     Aabb {
         min: Vec3::from(bounds.min.to_array().map(f32::next_down)),
         max: Vec3::from(bounds.max.to_array().map(f32::next_up)),
     }
+}
+
+/// By how much the box of a triangle is larger than needed, on each side.
+pub(super) fn margin_of(corners: [Vec3; 3]) -> f32 {
+    Aabb::from_points(corners).extent().max_element() * (4.0 * f32::EPSILON)
 }

@@ -1,10 +1,12 @@
 //! Triangles in a tree of their own, packed by leaf: up to eight side by side, tested together.
 
 mod build;
+mod clip;
 mod filter;
 mod in_flight;
 mod many;
 mod meet;
+mod moving;
 mod one;
 mod query;
 
@@ -19,6 +21,7 @@ use fearless_simd::prelude::*;
 use filter::{All, Where};
 use juggler_math::{Aabb, Ray, Vec3};
 use meet::Corner;
+pub use moving::MovingTriangleBvh;
 use one::One;
 pub use query::Filtered;
 use query::Query;
@@ -146,7 +149,8 @@ impl TriangleBvh {
 
     /// The same tree, of whose hits only those count that `accepts` lets pass, given the number of the ray in
     /// the slice (0 for one ray) and the hit: for cut-outs and masks. It may be asked about hits that turn out not
-    /// to be the closest, in any order, and must always answer the same.
+    /// to be the closest, about the same hit more than once (a triangle may stand in several leaves), in any order, and
+    /// must always answer the same.
     pub fn filtered<F: Fn(usize, &TriangleHit) -> bool + Copy>(&self, accepts: F) -> Filtered<'_, F> {
         Filtered { query: Query { tree: self, filter: Where(accepts) } }
     }

@@ -7,6 +7,7 @@ use super::{TriangleBvh, TriangleHit};
 use crate::lanes::Lanes;
 use crate::node::Child;
 use crate::packet::{GROUP, Group};
+use crate::single::{any_below, closest_below};
 use crate::slabs::Slabs;
 use crate::stack::Stack;
 use fearless_simd::dispatch;
@@ -42,8 +43,9 @@ impl<F: Filter> Query<'_, F> {
     fn closest_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> Option<TriangleHit> {
         let mut slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, *self, ray, &slabs);
-        self.tree.bvh.closest_below(
+        closest_below(
             simd,
+            &*self.tree.bvh.nodes,
             Child::ROOT,
             &mut Stack::new(),
             (number, &mut { *ray }),
@@ -57,7 +59,7 @@ impl<F: Filter> Query<'_, F> {
     fn any_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> bool {
         let slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, *self, ray, &slabs);
-        self.tree.bvh.any_below(simd, Child::ROOT, &mut Stack::new(), (number, ray), &slabs, &mut one)
+        any_below(simd, &*self.tree.bvh.nodes, Child::ROOT, &mut Stack::new(), (number, ray), &slabs, &mut one)
     }
 
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {

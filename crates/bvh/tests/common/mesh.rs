@@ -73,6 +73,20 @@ pub fn globe(random: &mut Random, rows: u32, columns: u32, rough: f32) -> Mesh {
     Mesh { positions, triangles }
 }
 
+/// Small triangles all over, and long thin ones across them in any direction, which the best quality divides.
+pub fn crossed(random: &mut Random, count: usize, long: usize) -> Mesh {
+    Mesh::of((0..count).map(|i| {
+        let (center, along) = (random.point(), random.point() * if i < long { 1.0 } else { 0.02 });
+        [center - along, center + along, center + along + random.point() * 0.02]
+    }))
+}
+
+/// Whether the best quality puts triangles of the mesh into several leaves.
+pub fn is_divided(mesh: &Mesh) -> bool {
+    let tree = TriangleBvh::build(&mesh.positions, &mesh.triangles, Quality::Best).unwrap();
+    tree.stats().references > tree.stats().items
+}
+
 /// A tree, ready for every kernel at one vector level.
 pub struct Kernels {
     name: String,

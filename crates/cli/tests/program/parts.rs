@@ -110,9 +110,10 @@ fn clusters_number_their_shards() {
 fn parts_cut_by_hand_join() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} --samples 48 -o straight.png -q"));
-    for (number, flags) in ["--crop 0,0,48,16", "--crop 0,16,48,20 --sample-range 0..32", "--crop 0,16,48,20 --sample-range 32..48"]
-        .iter()
-        .enumerate()
+    for (number, flags) in
+        ["--crop 0,0,48,16", "--crop 0,16,48,20 --sample-range 0..32", "--crop 0,16,48,20 --sample-range 32..48"]
+            .iter()
+            .enumerate()
     {
         folder.good(&format!("render {BALL} --samples 48 -q {flags} -o cut{number}.jfilm"));
     }

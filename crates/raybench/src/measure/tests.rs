@@ -1,8 +1,8 @@
 use super::*;
-use crate::kernel::{Kernel, TREES};
+use crate::kernel::{self, Kernel};
 use crate::meshes::Recipe;
 use crate::rays::{self, RaySet};
-use juggler_bvh::{Quality, TriangleBvh};
+use juggler_bvh::Quality;
 use juggler_math::Vec3;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -82,8 +82,8 @@ fn sums_tell_tracers_apart() {
 #[test]
 fn all_kernels_come_to_the_same_and_to_what_single_calls_say() {
     let mesh = Recipe::named("hall:3").unwrap().make();
-    for tree in TREES {
-        let bvh: TriangleBvh = (tree.build)(&mesh, Quality::Balanced).unwrap();
+    let trees = [Quality::Balanced, Quality::Best].map(|quality| kernel::build(&mesh, quality).unwrap());
+    for (_, bvh) in trees.into_iter().flat_map(kernel::with_tests) {
         for RaySet { kind, rays } in rays::make(&mesh, &bvh, 12_000) {
             let hits = match kind.query() {
                 rays::Query::Closest => rays.iter().filter(|ray| bvh.closest(ray).is_some()).count(),

@@ -1,5 +1,5 @@
 use super::*;
-use crate::kernel::TREES;
+use crate::kernel;
 use crate::rays;
 use juggler_bvh::Quality;
 use juggler_math::{Ray, hash, testing::Random};
@@ -68,7 +68,7 @@ fn meshes_are_the_same_bits_as_ever() {
 #[test]
 fn the_camera_sees_the_mesh_and_the_light_is_in_the_open() {
     for (name, mesh) in small() {
-        let bvh = (TREES[0].build)(&mesh, Quality::Fast).unwrap();
+        let bvh = kernel::build(&mesh, Quality::Fast).unwrap();
         let [primary, shadow, _, diffuse, ..] = rays::make(&mesh, &bvh, 20_000);
         let share = |hits: usize, of: usize| hits as f64 / of as f64;
         assert!(share(shadow.rays.len(), primary.rays.len()) > 0.15, "{name}: {}", shadow.rays.len());
@@ -82,7 +82,7 @@ fn the_camera_sees_the_mesh_and_the_light_is_in_the_open() {
 #[test]
 fn nothing_escapes_from_the_hall_and_the_classroom() {
     for (name, mesh) in small().filter(|(name, _)| ["hall", "classroom"].contains(name)) {
-        let bvh = (TREES[0].build)(&mesh, Quality::Fast).unwrap();
+        let bvh = kernel::build(&mesh, Quality::Fast).unwrap();
         let mut random = Random::new(5);
         for _ in 0..100_000 {
             let ray = Ray::new(mesh.view.light, random.unit_vector());

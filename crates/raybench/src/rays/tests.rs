@@ -1,12 +1,12 @@
 use super::*;
-use crate::kernel::TREES;
+use crate::kernel;
 use crate::meshes::Recipe;
 use juggler_bvh::Quality;
 use std::collections::HashSet;
 
 fn sets(name: &str, count: usize) -> (Mesh, TriangleBvh, [RaySet; 6]) {
     let mesh = Recipe::named(name).unwrap().make();
-    let bvh = (TREES[0].build)(&mesh, Quality::Balanced).unwrap();
+    let bvh = kernel::build(&mesh, Quality::Balanced).unwrap();
     let sets = make(&mesh, &bvh, count);
     (mesh, bvh, sets)
 }
@@ -123,7 +123,7 @@ fn diffuse_rays_leave_with_the_density_of_the_cosine() {
     let view =
         View { eye: vec3(0.0, 5.0, 0.0), look_at: Vec3::ZERO, up: Vec3::X, fov_degrees: 60.0, light: Vec3::Y * 9.0 };
     let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], view };
-    let bvh = (TREES[0].build)(&mesh, Quality::Fast).unwrap();
+    let bvh = kernel::build(&mesh, Quality::Fast).unwrap();
     let [_, _, _, diffuse, diffuse2, _] = make(&mesh, &bvh, 100_000);
     let mean = diffuse.rays.iter().map(|ray| f64::from(ray.direction.y)).sum::<f64>() / diffuse.rays.len() as f64;
     assert!((mean - 2.0 / 3.0).abs() < 0.005, "{mean}");
@@ -134,7 +134,7 @@ fn diffuse_rays_leave_with_the_density_of_the_cosine() {
 fn rays_on_a_mesh_that_nobody_sees() {
     let view = View::around(&juggler_math::Aabb::EMPTY);
     let mesh = Mesh { positions: Vec::new(), triangles: Vec::new(), view };
-    let bvh = (TREES[0].build)(&mesh, Quality::Fast).unwrap();
+    let bvh = kernel::build(&mesh, Quality::Fast).unwrap();
     let sets = make(&mesh, &bvh, 100);
     assert_eq!(sets.map(|set| set.rays.len()), [128, 0, 0, 0, 0, 0]);
 }

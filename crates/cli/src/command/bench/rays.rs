@@ -12,7 +12,7 @@ use juggler::math::Aabb;
 use juggler::scene::import::{self, Fault, ImportError, Limits};
 use juggler_bvh::{Quality, TriangleBvh};
 use juggler_raybench::clock::{Of, Stopwatch};
-use juggler_raybench::kernel::{Kernel, Scratch, TREES, Tree};
+use juggler_raybench::kernel::{self, Kernel, Scratch, Test};
 use juggler_raybench::measure::{self, Trace, median};
 use juggler_raybench::meshes::{BUILT_IN, Recipe, RecipeError};
 use juggler_raybench::rays::{self, RaySet};
@@ -97,18 +97,18 @@ impl Rays {
     fn measure(&self, subject: &Subject, pool: &ThreadPool) -> Result<Report, Failure> {
         let mesh = subject.mesh()?;
         let mut report = Report::new(subject.name(), mesh.triangles.len(), pool.current_num_threads());
-        let mut bvhs = Vec::new();
-        for tree in TREES {
-            for quality in Quality::ALL {
-                let (bvh, build) = pool.install(|| self.build(&mesh, tree, quality))?;
-                report.builds.push(build);
-                if quality == self.quality {
-                    bvhs.push((tree, bvh));
-                }
+        let mut traced = None;
+        for quality in Quality::ALL {
+            let (bvh, build) = pool.install(|| self.build(&mesh, quality))?;
+            report.builds.push(build);
+            if quality == self.quality {
+                traced = Some(bvh);
             }
         }
-        let Some((_, first)) = bvhs.first() else { return Ok(report) };
-        for set in rays::make(&mesh, first, self.rays as usize) {
+        let Some(bvh) = traced else { return Ok(report) };
+        let sets = rays::make(&mesh, &bvh, self.rays as usize);
+        let bvhs = kernel::with_tests(bvh);
+        for set in sets {
             if self.kinds.is_empty() || self.kinds.contains(&set.kind) {
                 self.trace(&set, &bvhs, &mut report)?;
             }
@@ -117,30 +117,25 @@ impl Rays {
     }
 
     /// Builds, more than once when that is quick.
-    fn build(&self, mesh: &Mesh, tree: &Tree, quality: Quality) -> Result<(TriangleBvh, Build), Failure> {
+    fn build(&self, mesh: &Mesh, quality: Quality) -> Result<(TriangleBvh, Build), Failure> {
         let (all, mut seconds) = (Stopwatch::start(Of::Process), Vec::new());
         loop {
             let watch = Stopwatch::start(Of::Process);
-            let bvh = (tree.build)(mesh, quality).map_err(|error| Failure::Wrong(error.to_string()))?;
+            let bvh = kernel::build(mesh, quality).map_err(|error| Failure::Wrong(error.to_string()))?;
             seconds.push(watch.elapsed().wall);
             if seconds.len() >= self.repeats as usize || all.elapsed().wall > QUICK_BUILDS {
-                let build = Build {
-                    test: tree.name,
-                    quality,
-                    seconds: median(seconds),
-                    bytes: bvh.bytes(),
-                    sah_cost: bvh.stats().sah_cost,
-                };
+                let build =
+                    Build { quality, seconds: median(seconds), bytes: bvh.bytes(), sah_cost: bvh.stats().sah_cost };
                 return Ok((bvh, build));
             }
         }
     }
 
-    fn trace(&self, set: &RaySet, bvhs: &[(&Tree, TriangleBvh)], report: &mut Report) -> Result<(), Failure> {
+    fn trace(&self, set: &RaySet, bvhs: &[(Test, TriangleBvh)], report: &mut Report) -> Result<(), Failure> {
         let query = set.kind.query();
         let kernels = Kernel::ALL.into_iter().filter(|k| self.kernels.is_empty() || self.kernels.contains(k));
         let pairs: Vec<_> =
-            kernels.flat_map(|kernel| bvhs.iter().map(move |(tree, bvh)| (*tree, kernel, bvh))).collect();
+            kernels.flat_map(|kernel| bvhs.iter().map(move |(test, bvh)| (test, kernel, bvh))).collect();
         let tracers: Vec<_> = pairs
             .iter()
             .map(|(_, kernel, bvh)| move |rays: &[_], scratch: &mut Scratch| kernel.trace(bvh, query, rays, scratch))
@@ -150,8 +145,8 @@ impl Rays {
         counts.dedup();
         for threads in counts {
             let timings = measure::in_turns(&set.rays, &traces, threads, self.repeats as usize);
-            for ((tree, kernel, _), timing) in pairs.iter().zip(timings) {
-                report.add(Rate { test: tree.name, kernel: *kernel, kind: set.kind, threads, timing })?;
+            for ((test, kernel, _), timing) in pairs.iter().zip(timings) {
+                report.add(Rate { test: test.name, kernel: *kernel, kind: set.kind, threads, timing })?;
             }
         }
         Ok(())

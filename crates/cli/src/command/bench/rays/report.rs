@@ -23,7 +23,6 @@ pub fn quality(quality: Quality) -> &'static str {
 
 /// One tree.
 pub struct Build {
-    pub test: &'static str,
     pub quality: Quality,
     /// Seconds on the wall's clock.
     pub seconds: f64,
@@ -92,7 +91,7 @@ impl Report {
         lines.push(row(&build, ["seconds", "bytes/tri", "SAH cost"].map(str::to_owned)));
         for build in &self.builds {
             let bytes = build.bytes as f64 / self.triangles as f64;
-            let label = format!("{} {}", build.test, quality(build.quality));
+            let label = format!("{} tree", quality(build.quality));
             lines.push(row(&label, [format!("{:.3}", build.seconds), number(bytes), number(build.sah_cost)]));
         }
         let mut kinds: Vec<Kind> = self.rates.iter().map(|rate| rate.kind).collect();
@@ -114,7 +113,6 @@ impl Report {
     fn to_json(&self) -> Value {
         let build = |build: &Build| {
             json!({
-                "test": build.test,
                 "quality": quality(build.quality),
                 "seconds": build.seconds,
                 "bytes_per_triangle": build.bytes as f64 / self.triangles as f64,
@@ -177,7 +175,7 @@ mod tests {
 
     fn report() -> Report {
         let mut report = Report::new("blob", 100, 2);
-        let build = Build { test: "watertight", quality: Quality::Best, seconds: 0.1234, bytes: 5550, sah_cost: 20.0 };
+        let build = Build { quality: Quality::Best, seconds: 0.1234, bytes: 5550, sah_cost: 20.0 };
         report.builds.push(build);
         for kind in [Kind::Primary, Kind::Ao] {
             for (threads, kernel) in [(1, Kernel::Single), (1, Kernel::Batch), (2, Kernel::Single), (2, Kernel::Batch)]
@@ -193,7 +191,7 @@ mod tests {
         let expected = "\
 blob: 100 triangles
 build, 2 threads                   seconds bytes/tri  SAH cost
-watertight best                      0.123     55.50     20.00
+best tree                            0.123     55.50     20.00
 Mrays/s                            primary        ao
 watertight single, 1 thread           2.00      2.00
 watertight batch, 1 thread            2.00      2.00

@@ -1,0 +1,124 @@
+//! Trees with divided triangles: what they cost, what they hold, and that no part of a triangle is missing.
+
+use super::*;
+use juggler_math::hash;
+
+/// Small triangles all over, and a share of long thin ones across them in any direction.
+fn crossed(count: u32, long: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let unit = |i: u32, k: u32| hash::unit_f32(hash::mix(hash::combine(i, k)));
+    let point = |i: u32, k: u32| Vec3::new(unit(i, k), unit(i, k + 1), unit(i, k + 2)) * 2.0 - Vec3::ONE;
+    let corners = |i: u32| {
+        let size = if i < long { 1.0 } else { 0.02 };
+        let (center, along) = (point(i, 0), point(i, 3) * size);
+        [center - along, center + along, center + along + point(i, 6) * 0.02]
+    };
+    let positions = (0..count).flat_map(corners).collect();
+    (positions, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+}
+
+/// What the tree would be without division.
+fn whole(mesh: &Mesh) -> Bvh {
+    Bvh::over(mesh.items().unwrap(), &BuildOptions { block: LANES, ..Quality::Best.into() })
+}
+
+#[test]
+fn division_never_costs_and_mostly_pays_for_long_triangles() {
+    for (count, long) in [(3, 3), (100, 20), (3000, 0), (3000, 300), (40_000, 300)] {
+        let (positions, triangles) = crossed(count, long);
+        let tree = TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap();
+        let (stats, whole) = (tree.stats(), whole(&Mesh { positions: &positions, triangles: &triangles }));
+        assert!(stats.sah_cost <= whole.stats.sah_cost, "{count}, {long}: {stats:?}");
+        assert_eq!((stats.items, stats.left_out), (count as usize, 0));
+        let places: usize = stats.leaf_sizes.iter().enumerate().map(|(size, leaves)| size * leaves).sum();
+        assert_eq!(places, stats.references);
+        assert!((count as usize..=count as usize * 5 / 4).contains(&stats.references), "{stats:?}");
+        if count >= 3000 && long > 0 {
+            assert!(stats.references > stats.items && stats.sah_cost < whole.stats.sah_cost * 0.97, "{stats:?}");
+        }
+    }
+}
+
+/// The boxes of the leaves that hold each triangle.
+fn boxes_of(bvh: &Bvh, triangles: usize) -> Vec<Vec<Aabb>> {
+    let mut boxes = vec![Vec::new(); triangles];
+    for node in bvh.nodes.iter() {
+        for slot in (0..node.count as usize).filter(|&slot| node.children[slot].is_leaf()) {
+            let side = |side: usize| Vec3::from(node.bounds.map(|sides| sides[side][slot]));
+            for position in node.children[slot].items() {
+                boxes[bvh.order[position as usize] as usize].push(Aabb { min: side(0), max: side(1) });
+            }
+        }
+    }
+    boxes
+}
+
+/// Every point of a triangle lies in the box of one of its leaves, with room on all sides.
+#[test]
+fn no_part_of_a_triangle_is_missing() {
+    for (scale, offset) in [(1.0, 0.0), (1e-20, 0.0), (1e25, 0.0), (1.0, 3000.0), (1.0, -1e4)] {
+        let (positions, triangles) = crossed(3000, 300);
+        let positions: Vec<Vec3> = positions.iter().map(|p| *p * scale + offset * scale).collect();
+        let mesh = Mesh { positions: &positions, triangles: &triangles };
+        let options = BuildOptions { block: LANES, ..Quality::Best.into() };
+        let bvh = Bvh::divided(mesh.items().unwrap(), &options, &mesh);
+        let mut divided = 0;
+        for (triangle, boxes) in boxes_of(&bvh, triangles.len()).iter().enumerate() {
+            let corners = mesh.corners(triangle).unwrap();
+            if has_area(corners) {
+                divided += usize::from(boxes.len() > 1);
+                check_points(corners, boxes);
+            }
+        }
+        assert!(divided > 20, "scale {scale:e}, offset {offset}: only {divided} triangles are divided");
+    }
+}
+
+fn check_points(corners: [Vec3; 3], boxes: &[Aabb]) {
+    let margin = f64::from(margin_of(corners)) * 0.99;
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    for step in 0..40 * 40 {
+        let (u, v) = (f64::from(step % 40) / 39.0, f64::from(step / 40) / 39.0);
+        let point = a * (1.0 - u) + (b * (1.0 - v) + c * v) * u;
+        let holds = |bounds: &Aabb| {
+            let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+            (point - margin).cmpge(low).all() && (point + margin).cmple(high).all()
+        };
+        assert!(boxes.iter().any(holds), "{point} of {corners:?} is in none of {boxes:?}");
+    }
+}
+
+#[test]
+fn any_number_of_threads_divides_the_same() {
+    let (positions, triangles) = crossed(60_000, 500);
+    let build = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap())
+    };
+    let one = build(1);
+    assert!(one.stats().references > one.stats().items + 500, "{:?}", one.stats());
+    assert!([2, 3].into_iter().all(|threads| one.same_bits(&build(threads))));
+}
+
+/// Nothing to divide, nothing that can be, and coordinates without measure.
+#[test]
+fn bad_triangles_are_left_out_or_divided_soundly() {
+    let (mut positions, triangles) = crossed(3000, 300);
+    positions[0] = Vec3::NAN;
+    positions[5] = Vec3::INFINITY;
+    positions[7] = positions[6];
+    positions[100] = Vec3::splat(f32::MAX);
+    positions[103] = Vec3::splat(-f32::MAX);
+    let tree = TriangleBvh::build(&positions, &triangles, Quality::Best).unwrap();
+    assert_eq!((tree.stats().items, tree.stats().left_out), (2997, 3));
+    let mesh = Mesh { positions: &positions, triangles: &triangles };
+    let options = BuildOptions { block: LANES, ..Quality::Best.into() };
+    for count in [0, 1, 2, 9] {
+        let mesh = Mesh { triangles: &triangles[10..10 + count], ..mesh };
+        let bvh = Bvh::divided(mesh.items().unwrap(), &options, &mesh);
+        assert_eq!((bvh.stats.items, bvh.stats.references >= count), (count, true));
+    }
+    let equal = vec![triangles[20]; 500];
+    let mesh = Mesh { triangles: &equal, ..mesh };
+    let bvh = Bvh::divided(mesh.items().unwrap(), &options, &mesh);
+    assert!(bvh.stats.items == 500 && bvh.stats.references <= 625 && bvh.stats.depth <= 72, "{:?}", bvh.stats);
+}
