@@ -25,7 +25,8 @@ pub enum TriangleTest {
     #[default]
     Watertight,
     /// In single precision: slender triangles may be off by thousands of ulp, so that rays that leave them may
-    /// meet them again. For queries that want no more than a hit.
+    /// meet them again. For queries that want no more than a hit. Where [spatial splits](crate::Quality::Best) divide such
+    /// triangles, which of two hits within that error counts may depend on the call.
     Fast,
 }
 

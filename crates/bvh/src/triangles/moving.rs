@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// A tree over triangles whose corners move linearly while the shutter is open. As [`TriangleBvh`](super::TriangleBvh)
-/// watertight, at every time, and at the cost of a third to a half of its speed.
+/// watertight, at every time.
 #[derive(Clone, Debug)]
 pub struct MovingTriangleBvh {
     /// Its leaves name one pair of blocks each, as in [`TriangleBvh`](super::TriangleBvh).
