@@ -1,6 +1,7 @@
 //! Why the program stops short, and the exit status that says so.
 
 use juggler::Error;
+use juggler::film::{MergeError, PartError};
 use juggler::imaging::ImageError;
 use juggler::scene::import::{Fault, ImportError};
 use juggler::scene::{Problems, SceneError};
@@ -88,6 +89,24 @@ impl From<ImageError> for Failure {
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
         }
+    }
+}
+
+impl From<PartError> for Failure {
+    fn from(error: PartError) -> Self {
+        match error {
+            PartError::Read { file, source } => Self::file("read", file, &source),
+            PartError::Write { file, source } => Self::file("write", file, &source),
+            PartError::Unfit { .. } => Self::Wrong(error.to_string()),
+            _ => Self::System(error.to_string()),
+        }
+    }
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        let message = error.to_string();
+        if error.is_of_files() { Self::System(message) } else { Self::Wrong(message) }
     }
 }
 

@@ -78,7 +78,7 @@ impl Plan {
             return Err(Failure::Wrong("the output has no name".into()));
         }
         output::at_most_one_stream(&output, args.stats.as_deref())?;
-        let encoding = Encoding::new(&args, &output)?;
+        let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, &output)?;
         let moments = match (args.frames, args.frame, args.at) {
             (Some(_), ..) if output == STANDARD_OUTPUT => {
                 return Err(Failure::Wrong("several frames need files: standard output holds one picture".into()));
@@ -150,19 +150,20 @@ impl Plan {
 }
 
 impl Encoding {
-    fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
+    /// What was asked for, or what the output's ending says.
+    pub fn new(format: Option<&str>, bits: Option<u8>, quality: Option<u8>, output: &str) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Wrong(message);
-        let format = match &args.format {
+        let format = match format {
             Some(name) => Format::from_path(Path::new(&format!("picture.{name}")))
                 .map_err(|_| wrong(format!("no format is called `{name}`; known are {}", Format::endings())))?,
             None if output == STANDARD_OUTPUT => Format::Png,
             None => Format::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
         };
         let mut options = Options::default();
-        if let Some(bits) = args.bits {
+        if let Some(bits) = bits {
             set_bits(&mut options, format, bits)?;
         }
-        if let Some(quality) = args.quality {
+        if let Some(quality) = quality {
             if format != Format::Jpeg {
                 return Err(wrong(format!("--quality is for JPEG files; a {format} file has none")));
             }

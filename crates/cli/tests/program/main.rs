@@ -6,6 +6,7 @@ mod answers;
 mod errors;
 mod harness;
 mod meshes;
+mod parts;
 mod pictures;
 mod signals;
 mod statistics;
