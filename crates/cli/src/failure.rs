@@ -1,8 +1,7 @@
 //! Why the program stops short, and the exit status that says so.
 
 use juggler::Error;
-use juggler::film::checkpoint::ResumeError;
-use juggler::film::part::PartError;
+use juggler::film::{MergeError, PartError, ResumeError};
 use juggler::imaging::ImageError;
 use juggler::scene::import::{Fault, ImportError};
 use juggler::scene::{Problems, SceneError};
@@ -114,7 +113,7 @@ impl From<PartError> for Failure {
         match &error {
             PartError::Read { file, source } => Self::file("read", file, source),
             PartError::Write { file, source } => Self::file("write", file, source),
-            PartError::NotAPart { .. } => Self::Wrong(error.to_string()),
+            PartError::NotAPart { .. } | PartError::Unfit { .. } => Self::Wrong(error.to_string()),
             _ => Self::System(error.to_string()),
         }
     }
@@ -127,6 +126,13 @@ impl From<ResumeError> for Failure {
             ResumeError::Foreign { .. } | ResumeError::Beyond { .. } => Self::Wrong(error.to_string()),
             ResumeError::Tile { .. } => Self::System(error.to_string()),
         }
+    }
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        let message = error.to_string();
+        if error.is_of_files() { Self::System(message) } else { Self::Wrong(message) }
     }
 }
 

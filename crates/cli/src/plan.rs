@@ -4,7 +4,7 @@ mod parts;
 mod product;
 
 pub use parts::{Checkpoint, Cut, Shard};
-pub use product::{Encoding, Product};
+pub use product::{Encoding, PART_ENDING, Product};
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;

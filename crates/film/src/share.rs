@@ -111,7 +111,7 @@ impl Work {
             length /= 2;
         }
         if self.stop != Stop::Samples || number(blocks) >= wanted {
-            return vec![start..end];
+            return std::iter::once(start..end).collect();
         }
         let from = (first / length..end.div_ceil(BLOCK).div_ceil(length)).map(|piece| piece * length * BLOCK);
         from.map(|from| from.max(start)..from.saturating_add(length * BLOCK).min(end)).collect()

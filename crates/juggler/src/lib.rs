@@ -19,7 +19,7 @@
 //! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards.
 //!
 //! Rendering uses the current rayon thread pool. The crates behind: [`math`], [`tracer`], [`scene`],
-//! [`imaging`]. The folder `examples/` is a course in four steps.
+//! [`imaging`], [`film`]. The folder `examples/` is a course in four steps.
 
 mod error;
 mod kinds;

@@ -1,12 +1,14 @@
-//! `juggler info`: what is in a scene or a mesh, and what a picture says about itself.
+//! `juggler info`: what is in a scene or a mesh, and what a picture or a part of one says about itself.
 
 mod mesh;
+mod part;
 
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, counted};
 use crate::source;
 use clap::Args;
+use juggler::film;
 use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Scene, import};
@@ -19,7 +21,8 @@ use std::path::Path;
 /// Flags of `juggler info`.
 #[derive(Debug, Args)]
 pub struct Info {
-    /// A scene file, the name of a built-in scene, `-` for standard input, a mesh (PLY, OBJ, STL), or a picture
+    /// A scene file, the name of a built-in scene, `-` for standard input, a mesh (PLY, OBJ, STL), a picture, or a part of
+    /// one (.jfilm)
     scene: String,
     /// As one JSON object
     #[arg(long)]
@@ -33,8 +36,12 @@ impl Info {
         if import::is_mesh_name(path) && path.exists() {
             return console::print(&mesh::Report::of(&self.scene)?.text(self.json));
         }
-        if let Some(format) = picture_format(Path::new(&self.scene)) {
+        let start = first_bytes(path).unwrap_or_default();
+        if let Some(format) = Format::from_first_bytes(&start) {
             return self.picture(format);
+        }
+        if film::is_part(&start) {
+            return console::print(&part::text(path, self.json)?);
         }
         let scene = source::load(&self.scene)?;
         let compiled = scene.compile()?;
@@ -61,12 +68,12 @@ impl Info {
     }
 }
 
-/// The format of a file that is a picture.
-fn picture_format(path: &Path) -> Option<Format> {
+/// As many bytes of a file as tell what it is.
+fn first_bytes(path: &Path) -> Option<Vec<u8>> {
     let file = File::open(path).ok().filter(|_| path.is_file())?;
     let mut start = Vec::new();
     file.take(12).read_to_end(&mut start).ok()?;
-    Format::from_first_bytes(&start)
+    Some(start)
 }
 
 fn row(key: &str, value: &str) -> String {

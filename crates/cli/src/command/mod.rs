@@ -8,6 +8,7 @@ mod check;
 mod compare;
 mod convert;
 mod info;
+mod merge;
 mod render;
 mod scenes;
 mod schema;
@@ -20,8 +21,10 @@ pub enum Command {
     Render(Box<crate::args::RenderArgs>),
     /// Say all that is wrong with a scene, without rendering it
     Check(check::Check),
-    /// Say what is in a scene, or what a picture says about itself
+    /// Say what is in a scene, or what a picture or a part of one says about itself
     Info(info::Info),
+    /// Join parts of a picture: to the picture, with the bytes of a single render, or to a larger part
+    Merge(merge::Merge),
     /// Write the JSON Schema of the scene format
     Schema,
     /// Write any readable scene as scene JSON
@@ -41,6 +44,7 @@ impl Command {
             Self::Render(args) => render::run(*args),
             Self::Check(check) => check.run(),
             Self::Info(info) => info.run(),
+            Self::Merge(merge) => merge.run(),
             Self::Schema => schema::run(),
             Self::Convert(convert) => convert.run(),
             Self::Compare(compare) => compare.run(),

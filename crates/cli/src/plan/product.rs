@@ -32,10 +32,11 @@ impl Product {
     pub fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
         let is_part = match &args.format {
             Some(name) => name == PART_ENDING,
-            None => Path::new(output).extension().is_some_and(|ending| ending == PART_ENDING),
+            None => Path::new(output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING)),
         };
         if !is_part {
-            return Encoding::new(args, output).map(Self::Picture);
+            let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output);
+            return encoding.map(Self::Picture);
         }
         let wrong = |message: &str| Err(Failure::Wrong(message.into()));
         match (output, args.bits, args.quality) {
@@ -48,19 +49,20 @@ impl Product {
 }
 
 impl Encoding {
-    fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
+    /// What was asked for, or what the output's ending says.
+    pub fn new(format: Option<&str>, bits: Option<u8>, quality: Option<u8>, output: &str) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Wrong(message);
-        let format = match &args.format {
+        let format = match format {
             Some(name) => Format::from_path(Path::new(&format!("picture.{name}")))
                 .map_err(|_| wrong(format!("no format is called `{name}`; known are {}", Format::endings())))?,
             None if output == STANDARD_OUTPUT => Format::Png,
             None => Format::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
         };
         let mut options = Options::default();
-        if let Some(bits) = args.bits {
+        if let Some(bits) = bits {
             set_bits(&mut options, format, bits)?;
         }
-        if let Some(quality) = args.quality {
+        if let Some(quality) = quality {
             if format != Format::Jpeg {
                 return Err(wrong(format!("--quality is for JPEG files; a {format} file has none")));
             }

@@ -57,9 +57,9 @@ fn another_picture_does_not_go_on() {
 #[test]
 fn an_interrupted_render_keeps_its_work() {
     let folder = Folder::new();
-    let line = format!("render ball.json --size 100x100 --samples 100000 --checkpoint kept.jfilm --checkpoint-every 0.05");
+    let line = "render ball.json --size 100x100 --samples 100000 --checkpoint kept.jfilm --checkpoint-every 0.05";
     for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-KILL", -1)] {
-        let child = folder.command(&line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let child = folder.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let start = Instant::now();
         let old = fs::metadata(folder.path("kept.jfilm")).and_then(|data| data.modified()).ok();
         let new = || fs::metadata(folder.path("kept.jfilm")).and_then(|data| data.modified()).ok();

@@ -84,8 +84,8 @@ fn shares_cost_about_the_same() {
 fn a_costly_place_is_shared() {
     // A corner that costs a hundred times as much, and stripes as wide as a tile.
     let corner = |pixels: &Rect| if pixels.x < 400 && pixels.y < 300 { 100.0 } else { 1.0 };
-    let columns = |pixels: &Rect| if pixels.x / TILE % 2 == 0 { 100.0 } else { 1.0 };
-    let rows = |pixels: &Rect| if pixels.y / TILE % 4 == 0 { 100.0 } else { 1.0 };
+    let columns = |pixels: &Rect| if (pixels.x / TILE).is_multiple_of(2) { 100.0 } else { 1.0 };
+    let rows = |pixels: &Rect| if (pixels.y / TILE).is_multiple_of(4) { 100.0 } else { 1.0 };
     for count in [2, 4, 5, 8, 16] {
         let work = work(1920, 1080, 0..64);
         for (name, most, weight) in

@@ -1,0 +1,96 @@
+//! `juggler info part.jfilm`: what a part of a picture holds. Every byte of it is checked on the way.
+
+use super::row;
+use crate::failure::Failure;
+use crate::format::bytes;
+use juggler::film::{Description, Part, Share, Stop};
+use juggler::tracer::film::Rect;
+use serde_json::json;
+use std::path::Path;
+
+/// What the tiles of a part hold.
+struct Contents {
+    /// Tiles with samples.
+    tiles: usize,
+    /// Samples per pixel, of the tile that has fewest and of the one that has most.
+    samples: [u32; 2],
+}
+
+/// Words, or one JSON object.
+pub fn text(path: &Path, json: bool) -> Result<String, Failure> {
+    let part = Part::open(path)?;
+    let contents = contents(&part)?;
+    Ok(if json { to_json(&part, &contents) } else { to_words(&part, &contents) })
+}
+
+fn contents(part: &Part) -> Result<Contents, Failure> {
+    let mut reader = part.reader()?;
+    let mut samples = [u32::MAX, 0];
+    for number in part.tiles() {
+        let tile = reader.tile(number)?;
+        let own = tile.runs().iter().map(|run| run.samples.end - run.samples.start).sum();
+        samples = [samples[0].min(own), samples[1].max(own)];
+    }
+    Ok(Contents { tiles: part.tiles().len(), samples: [samples[0].min(samples[1]), samples[1]] })
+}
+
+fn to_words(part: &Part, contents: &Contents) -> String {
+    let Description { size: [width, height], region, samples, stop, share, .. } = part.description();
+    let [fewest, most] = contents.samples;
+    let of = part.description().layout().tiles();
+    let mut lines = vec![part.path().display().to_string()];
+    let mut say = |key: &str, value: String| lines.push(row(key, &value));
+    let finished = if part.description().finished { "finished" } else { "not finished" };
+    say("part", format!("{}, {finished}", share_in_words(share, *samples)));
+    say("picture", format!("{width}x{height}{}, {}", crop_in_words(region, *width, *height), goal(*stop, *samples)));
+    say("scene", format!("{}, frame {}", part.description().scene, part.description().frame));
+    say("tiles", format!("{} of {of}", contents.tiles));
+    say("samples", if fewest == most { most.to_string() } else { format!("{fewest} to {most} a pixel") });
+    say("file", bytes(part.bytes()));
+    say("command", part.description().command.clone());
+    for (key, text) in &part.description().metadata {
+        say(key, text.clone());
+    }
+    for (name, value) in &part.description().fingerprint {
+        say("fingerprint", format!("{name} {value}"));
+    }
+    lines.join("\n")
+}
+
+/// `shard 3 of 40`, and what was cut when it was not everything.
+fn share_in_words(share: &Share, all: u32) -> String {
+    let Share { index, count, samples, crop } = share;
+    let mut text = if *count > 1 { format!("shard {index}/{count}") } else { "whole".to_owned() };
+    if *samples != (0..all) {
+        text += &format!(" of samples {}..{}", samples.start, samples.end);
+    }
+    if let Some(Rect { x, y, width, height }) = crop {
+        text += &format!(" of the crop {x},{y},{width},{height}");
+    }
+    text
+}
+
+fn crop_in_words(region: &Rect, width: u32, height: u32) -> String {
+    let Rect { x, y, width: w, height: h } = *region;
+    if *region == (Rect { x: 0, y: 0, width, height }) { String::new() } else { format!(", its crop {x},{y},{w},{h}") }
+}
+
+fn goal(stop: Stop, samples: u32) -> String {
+    match stop {
+        Stop::Samples => format!("{samples} samples"),
+        Stop::Noise { level } => format!("until the noise is {level}, at most {samples} samples"),
+        Stop::Time { seconds } => format!("{seconds} s, at most {samples} samples"),
+    }
+}
+
+fn to_json(part: &Part, contents: &Contents) -> String {
+    json!({
+        "version": 1,
+        "file": part.path().display().to_string(),
+        "bytes": part.bytes(),
+        "tiles": contents.tiles,
+        "samples": contents.samples,
+        "part": part.description(),
+    })
+    .to_string()
+}

@@ -1,0 +1,133 @@
+//! `juggler merge`: parts of a picture become the picture, or a larger part.
+
+use crate::console;
+use crate::failure::Failure;
+use crate::format::{bytes, counted, duration};
+use crate::output::{self, STANDARD_OUTPUT};
+use crate::plan::{Encoding, PART_ENDING};
+use clap::Args;
+use juggler::film::{self, Description, Wanted};
+use juggler::imaging::{self, Header, Tone};
+use juggler::tracer::film::Summary;
+use serde_json::json;
+use std::path::Path;
+use std::time::Instant;
+
+/// Flags of `juggler merge`.
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// Parts of one picture (.jfilm), in any order
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<String>,
+    /// Where the picture goes; the ending says the format: a picture needs all its parts, a .jfilm takes what is there
+    #[arg(short, long, value_name = "FILE")]
+    output: String,
+    /// The file format of the picture, instead of the one that the ending says
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<String>,
+    /// Bits of a channel: 8 or 16 in a PNG, 16 or 32 in an EXR
+    #[arg(long, value_name = "N")]
+    bits: Option<u8>,
+    /// Quality of a JPEG
+    #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
+    quality: Option<u8>,
+    /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    stats: Option<String>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What was made.
+enum Made {
+    Picture(Summary),
+    Part(u64),
+}
+
+impl Merge {
+    /// Checks all parts, then joins them.
+    pub fn run(self) -> Result<(), Failure> {
+        let start = Instant::now();
+        output::at_most_one_stream(&self.output, self.stats.as_deref())?;
+        let is_part =
+            Path::new(&self.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING));
+        let (merge, made) = if is_part {
+            self.check_part_flags()?;
+            let merge = film::Merge::open(&self.parts, Wanted::Part)?;
+            let made = Made::Part(merge.write(Path::new(&self.output))?);
+            (merge, made)
+        } else {
+            let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+            let merge = film::Merge::open(&self.parts, Wanted::Whole)?;
+            let made = Made::Picture(self.picture(&merge, encoding)?);
+            (merge, made)
+        };
+        self.report(merge.description(), &made, start)
+    }
+
+    fn check_part_flags(&self) -> Result<(), Failure> {
+        if self.format.is_some() || self.bits.is_some() || self.quality.is_some() {
+            return Err(Failure::Wrong(
+                "--format, --bits and --quality are for pictures; a part keeps everything".into(),
+            ));
+        }
+        Ok(())
+    }
+
+    fn picture(&self, merge: &film::Merge, Encoding { format, options }: Encoding) -> Result<Summary, Failure> {
+        let Description { region, tone, metadata, .. } = merge.description();
+        let tone: Tone = serde_json::from_value(tone.clone())
+            .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
+        let header = Header { tone, options, metadata: metadata.clone(), ..Header::new(region.width, region.height) };
+        let mut writer = match self.output.as_str() {
+            STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
+            file => imaging::create(Path::new(file), format, &header)?,
+        };
+        let summary = merge.rows(|rows| Ok::<(), Failure>(writer.write_rows(rows)?))?;
+        writer.finish()?;
+        Ok(summary)
+    }
+
+    fn report(&self, picture: &Description, made: &Made, start: Instant) -> Result<(), Failure> {
+        let took = start.elapsed();
+        if let Some(file) = &self.stats {
+            output::write_text(file, &self.to_json(picture, made, took.as_secs_f64()))?;
+        }
+        if self.quiet {
+            return Ok(());
+        }
+        let [width, height] = [picture.region.width, picture.region.height];
+        let what = match made {
+            Made::Picture(_) => counted(picture.samples.into(), "sample"),
+            Made::Part(length) if picture.finished => format!("whole, {}", bytes(*length)),
+            Made::Part(length) => format!("not all of it, {}", bytes(*length)),
+        };
+        let parts = counted(self.parts.len() as u128, "part");
+        let line = format!("{}: {width}x{height}, {what}, of {parts}, {}", self.output, duration(took));
+        if self.output == STANDARD_OUTPUT || self.stats.as_deref() == Some(STANDARD_OUTPUT) {
+            console::say(&line);
+            return Ok(());
+        }
+        console::print(&line)
+    }
+
+    /// The keys have the meaning that they have for a render.
+    fn to_json(&self, picture: &Description, made: &Made, seconds: f64) -> String {
+        let film = match made {
+            Made::Picture(Summary { hash, mean }) => json!({"mean": mean, "hash": hash}),
+            Made::Part(_) => serde_json::Value::Null,
+        };
+        json!({
+            "version": 1,
+            "scene": picture.scene,
+            "size": [picture.region.width, picture.region.height],
+            "samples": picture.samples,
+            "finished": picture.finished,
+            "parts": self.parts.len(),
+            "seconds": {"total": seconds},
+            "film": film,
+        })
+        .to_string()
+    }
+}

@@ -1,0 +1,138 @@
+//! `juggler merge` and `juggler info` on parts of pictures.
+
+use crate::harness::Folder;
+use juggler::film::share::Work;
+use juggler::film::{Description, Share, Stop, write};
+use juggler::imaging::Tone;
+use juggler::math::Rgb;
+use juggler::tracer::film::{Accumulator, Rect, Run, Tile, runs};
+use std::fs;
+
+const SAMPLES: u32 = 40;
+
+fn description() -> Description {
+    Description {
+        software: "Juggler".into(),
+        command: "juggler render ball.json --samples 40".into(),
+        scene: "ball".into(),
+        frame: 1.5,
+        size: [70, 40],
+        region: Rect { x: 0, y: 0, width: 70, height: 40 },
+        samples: SAMPLES,
+        stop: Stop::Samples,
+        share: Share::whole(SAMPLES),
+        finished: true,
+        fingerprint: [("seed".to_owned(), "7".to_owned())].into(),
+        tone: serde_json::to_value(Tone::default()).unwrap(),
+        metadata: vec![("Software".into(), "Juggler".into())],
+    }
+}
+
+/// Writes share `index` of `count` of a picture that is a ramp, as `index.jfilm`.
+fn share(folder: &Folder, index: u32, count: u32, change: impl Fn(&mut Description)) {
+    let mut description = Description { share: Share { index, count, ..Share::whole(SAMPLES) }, ..description() };
+    change(&mut description);
+    let layout = description.layout();
+    let tile = |number: u64| {
+        let mut tile = Tile::new(layout.tile(number).unwrap());
+        let Rect { x, y, width, .. } = tile.pixels();
+        for samples in runs(0..SAMPLES) {
+            let sum = |pixel: u32| {
+                let mut accumulator = Accumulator::default();
+                accumulator.begin(samples.start, None);
+                let light = (x + pixel % width + y) as f32 / 110.0;
+                accumulator.add(&vec![Rgb::new(light, 0.5, 1.0 - light); samples.len()]);
+                accumulator.sums().next().unwrap()
+            };
+            let sums = (0..tile.pixels().area() as u32).map(sum).collect();
+            tile.add(Run { samples, sums }).unwrap();
+        }
+        (number, tile)
+    };
+    // Of pieces of a tile's samples those from the first are taken with all.
+    let units = Work::of(&Description { stop: Stop::Time { seconds: 1.0 }, ..description.clone() }).share(index, count);
+    let tiles = units.into_iter().map(|unit| tile(unit.tile));
+    write(&folder.path(&format!("{index}.jfilm")), &description, tiles).unwrap();
+}
+
+fn shares(folder: &Folder, count: u32) -> String {
+    let name = |index: u32| {
+        share(folder, index, count, |description| description.stop = Stop::Noise { level: 0.1 });
+        format!("{index}.jfilm ")
+    };
+    (0..count).rev().map(name).collect()
+}
+
+#[test]
+fn parts_become_the_picture_of_the_whole() {
+    let folder = Folder::new();
+    share(&folder, 0, 1, |description| description.stop = Stop::Noise { level: 0.1 });
+    folder.good("merge 0.jfilm -o whole.png");
+    let parts = shares(&folder, 3);
+    let line = folder.good(&format!("merge {parts} -o parts.png")).stdout;
+    assert!(line.starts_with("parts.png: 70x40, 40 samples, of 3 parts, "), "{line}");
+    assert_eq!(fs::read(folder.path("whole.png")).unwrap(), fs::read(folder.path("parts.png")).unwrap());
+    // By way of a larger part, through standard output.
+    let line = folder.good("merge 2.jfilm 0.jfilm -o some.jfilm").stdout;
+    assert!(line.starts_with("some.jfilm: 70x40, not all of it, "), "{line}");
+    let streamed = folder.run("merge some.jfilm 1.jfilm -o - --quiet");
+    assert_eq!(streamed.bytes, fs::read(folder.path("whole.png")).unwrap());
+    let stats = folder.good(&format!("merge {parts} -o a.pfm --stats - --quiet")).stdout;
+    let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+    assert_eq!((&stats["parts"], &stats["size"][0], &stats["samples"]), (&3.into(), &70.into(), &40.into()));
+    assert_eq!(stats["film"]["hash"].as_str().unwrap().len(), 64);
+    assert!(folder.good("info whole.png").stdout.contains("Software"));
+}
+
+#[test]
+fn wrong_choices_of_parts_are_named() {
+    let folder = Folder::new();
+    shares(&folder, 5);
+    let message = folder.bad("merge 0.jfilm 2.jfilm 0.jfilm -o a.png", 2);
+    assert!(message.contains("0.jfilm: holds samples that 0.jfilm holds too"), "{message}");
+    assert!(message.contains("still to do: --shard 1,3-4/5 (3 shards are missing)"), "{message}");
+    share(&folder, 1, 5, |description| drop(description.fingerprint.insert("seed".into(), "8".into())));
+    let message = folder.bad("merge 0.jfilm 1.jfilm 2.jfilm -o a.jfilm", 2);
+    let expected =
+        "1.jfilm: is of another picture than 0.jfilm: stop: samples instead of noise 0.1; seed: 8 instead of 7";
+    assert!(message.contains(expected), "{message}");
+    assert!(folder.bad("merge 0.jfilm -o a.jfilm --bits 8", 2).contains("--bits"));
+    assert!(folder.bad("merge 0.jfilm -o a.tga", 2).contains(".png"));
+    assert!(folder.bad("merge -o a.png", 2).contains("PART"));
+    assert!(!folder.path("a.png").exists() && !folder.path("a.jfilm").exists());
+}
+
+#[test]
+fn files_that_fail_are_named() {
+    let folder = Folder::new();
+    shares(&folder, 2);
+    let bytes = fs::read(folder.path("1.jfilm")).unwrap();
+    fs::write(folder.path("1.jfilm"), &bytes[..bytes.len() - 1]).unwrap();
+    let message = folder.bad("merge 0.jfilm 1.jfilm none.jfilm ball.json -o a.png", 3);
+    for expected in
+        ["1.jfilm: is cut short", "none.jfilm: cannot be read", "ball.json: is no part", "still to do: --shard 1/2"]
+    {
+        assert!(message.contains(expected), "{expected}: {message}");
+    }
+    assert!(folder.bad("info 1.jfilm", 3).contains("1.jfilm: is cut short"));
+}
+
+#[test]
+fn parts_explain_themselves() {
+    let folder = Folder::new();
+    shares(&folder, 3);
+    let words = folder.good("info 1.jfilm").stdout;
+    for expected in [
+        "part         shard 1/3, finished",
+        "picture      70x40, until the noise is 0.1, at most 40 samples",
+        "scene        ball, frame 1.5",
+        "tiles        5 of 15",
+        "samples      40",
+        "command      juggler render ball.json --samples 40",
+        "fingerprint  seed 7",
+    ] {
+        assert!(words.contains(expected), "{expected}: {words}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&folder.good("info 1.jfilm --json").stdout).unwrap();
+    assert_eq!((&json["part"]["share"]["index"], &json["tiles"]), (&1.into(), &5.into()));
+}
