@@ -27,6 +27,10 @@ cargo test --workspace --locked
 if [ "$mode" = all ]; then
   step "tests: pictures and hashes again, optimised: debug and release must agree to the bit"
   cargo test --release --locked -p juggler-golden
+
+  step "tests: hashes once more, built for this very processor"
+  RUSTFLAGS="-C target-cpu=native" CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
+    cargo test --release --locked --target-dir target/native -p juggler-golden --test hashes --test matrix
 fi
 
 step "all checks passed"

@@ -28,7 +28,7 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
 
 /// What comes before the tests of a file, without comments.
 fn code(path: &Path) -> String {
-    let is_test = path.ends_with("tests.rs")
+    let is_test = ["tests.rs", "testing.rs"].iter().any(|name| path.ends_with(name))
         || path.iter().any(|part| ["tests", "contract", "benches"].iter().any(|t| part == *t));
     if is_test {
         return String::new();
@@ -41,7 +41,10 @@ fn code(path: &Path) -> String {
 /// The methods called in a file that its numbers must not depend on.
 fn calls(code: &str, fused: bool) -> Vec<&'static str> {
     let called = |name: &&str| code.contains(&format!(".{name}(")) || code.contains(&format!("::{name}("));
-    let ours = |name: &&str| code.contains(&format!("fun::{name}(")) && !code.contains(&format!(".{name}("));
+    let ours = |name: &&str| {
+        let pure = ["fun", "libm"].iter().any(|module| code.contains(&format!("{module}::{name}(")));
+        pure && !code.contains(&format!(".{name}("))
+    };
     let platform = PLATFORM.iter().filter(|name| called(name) && !ours(name)).copied();
     platform.chain((!fused && code.contains("mul_add")).then_some("mul_add")).collect()
 }

@@ -7,7 +7,7 @@ use juggler_scene::{Compiled, Fingerprint, Scene};
 use juggler_tracer::camera::Projection;
 use juggler_tracer::film::{Digest, Filter, Rect, Summary};
 use juggler_tracer::render::{self, Control, Job, Rays, Scheduler, Stopped};
-use juggler_tracer::world::World;
+use juggler_tracer::world::{SimdLevel, World};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -53,6 +53,12 @@ impl Picture {
         let mut picture = Self { projection, region, tone, limit, fingerprint, compiled };
         picture.complete_fingerprint();
         Ok(picture)
+    }
+
+    /// The same picture for another vector unit than the best of this machine: for tests and measurements.
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.compiled.world = self.compiled.world.with_simd_level(level);
+        self
     }
 
     /// Width and height of what is rendered: of the crop when there is one.

@@ -5,8 +5,10 @@ use super::items::{Item, Placed};
 use super::large::{self, Large, Order};
 use super::{Content, Object, Vertex, WorldHit};
 use crate::material::{MaterialId, MaterialTable};
-use juggler_bvh::{Bvh, Quality};
+use crate::shape::AnyShape;
+use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_math::{Aabb, Ray, Transform};
+use std::sync::Arc;
 
 /// Most objects that a world may place, those of groups counted as often as they are placed: each has a number
 /// of its own.
@@ -98,6 +100,23 @@ impl Level {
         let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
         let objects = objects.into_iter().map(Placed::new).collect();
         Self { objects, firsts, items, bvh, large, unbounded, bounds, totals }
+    }
+
+    /// The same level and all below it for another vector unit than the best of this machine.
+    pub(super) fn at_simd_level(&self, simd: SimdLevel) -> Self {
+        let mut level = self.clone();
+        level.bvh = level.bvh.with_simd_level(simd);
+        for placed in &mut level.objects {
+            match &mut placed.content {
+                Content::Level(below) => *below = Arc::new(below.at_simd_level(simd)),
+                Content::Shape(shape) => {
+                    if let AnyShape::Mesh(mesh) = &**shape {
+                        *shape = Arc::new(mesh.with_simd_level(simd).into());
+                    }
+                }
+            }
+        }
+        level
     }
 
     /// A box around everything in it that has an end; empty when nothing has.

@@ -22,6 +22,7 @@ mod precision;
 mod tests;
 
 pub use geometry::Geometry;
+pub use juggler_bvh::{SimdLevel, simd_levels};
 pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
 pub use object::{Content, Object};
 
@@ -115,6 +116,12 @@ impl World {
         let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
         let lamps = lights.into_iter().filter(|light| light.ambient().is_black()).map(Lamp::new).collect();
         Self { top, materials, lamps, ambient, background, has_transparency }
+    }
+
+    /// The same world for another vector unit than the best of this machine: for tests and measurements.
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.top = self.top.at_simd_level(level);
+        self
     }
 
     /// The lights that shine from somewhere.

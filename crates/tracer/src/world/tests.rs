@@ -176,23 +176,10 @@ fn instances_equal_brute_force() {
     equals_brute_force(&grove(&mut Random::new(27)), 300);
 }
 
-/// The same level and all below it for another vector unit.
-fn at_simd_level(level: &Level, simd: juggler_bvh::SimdLevel) -> Level {
-    let mut level = level.clone();
-    level.bvh = level.bvh.with_simd_level(simd);
-    for placed in &mut level.objects {
-        if let Content::Level(below) = &mut placed.content {
-            *below = Arc::new(at_simd_level(below, simd));
-        }
-    }
-    level
-}
-
 #[test]
 fn every_vector_unit_equals_brute_force() {
-    for simd in juggler_bvh::simd_levels() {
-        let mut world = grove(&mut Random::new(24));
-        world.top = at_simd_level(&world.top, simd);
+    for simd in simd_levels() {
+        let world = grove(&mut Random::new(24)).with_simd_level(simd);
         equals_brute_force(&world, 60);
     }
 }

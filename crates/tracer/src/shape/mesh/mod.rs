@@ -17,6 +17,7 @@ use super::arithmetic::within_floats;
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
+use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
 use prepared::Prepared;
 use schemars::JsonSchema;
@@ -79,6 +80,12 @@ impl Mesh {
         }
         *self = Self { file: self.file.take(), ..data.into() };
         Ok(())
+    }
+
+    /// The same mesh for another vector unit than the best of this machine.
+    pub(crate) fn with_simd_level(&self, level: SimdLevel) -> Self {
+        let prepared = self.prepared.as_ref().map(|prepared| Arc::new(prepared.with_simd_level(level)));
+        Self { prepared, ..self.clone() }
     }
 
     /// The arrays, once prepared.

@@ -2,7 +2,7 @@
 
 use super::MeshData;
 use crate::shape::{InvalidShape, check::invalid};
-use juggler_bvh::{Quality, TriangleBvh};
+use juggler_bvh::{Quality, SimdLevel, TriangleBvh};
 use juggler_math::Aabb;
 use rayon::prelude::*;
 use std::fmt;
@@ -66,6 +66,12 @@ impl Prepared {
         let bvh = TriangleBvh::build(&data.positions, &data.triangles, Quality::Balanced)
             .map_err(|error| invalid("triangles", error.to_string()))?;
         Ok(Self { data, bvh, bounds, area, degenerate, areas: OnceLock::new() })
+    }
+
+    /// The same for another vector unit.
+    pub fn with_simd_level(&self, level: SimdLevel) -> Self {
+        let bvh = self.bvh.clone().with_simd_level(level);
+        Self { data: self.data.clone(), bvh, areas: OnceLock::new(), ..*self }
     }
 
     /// The arrays.
