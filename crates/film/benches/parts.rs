@@ -5,9 +5,10 @@
 use juggler::prelude::*;
 use juggler::tracer::film::{BLOCK, Layout, Rect, Run, Sum, Tile};
 use juggler_film::share::Work;
-use juggler_film::{Chunk, Description, Merge, Part, Share, Stop, Wanted, write};
+use juggler_film::{Chunk, Description, Merge, Part, PartError, Share, Stop, Wanted, write};
 use juggler_raybench::clock::{Of, Stopwatch};
 use std::error::Error;
+use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
 const SIZE: [u32; 2] = [640, 360];
@@ -91,7 +92,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let samples = blocks * BLOCK;
         let raw: usize = tiles.iter().flat_map(Tile::runs).map(|run| run.sums.len() * 36).sum();
         let whole = description(samples, Share::whole(samples));
-        let pack = speed(raw, || Ok(drop(tiles.iter().map(Chunk::encode).collect::<Vec<_>>())))?;
+        let pack = speed(raw, || {
+            black_box(tiles.iter().map(Chunk::encode).collect::<Vec<_>>());
+            Ok(())
+        })?;
         let numbered = || (0..).zip(tiles.iter().cloned());
         let bytes = write(&file, &whole, numbered())?;
         let write = speed(raw, || Ok(write(&file, &whole, numbered()).map(|_| ())?))?;
@@ -99,7 +103,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let files = shares(folder.path(), &tiles, samples)?;
         let merge = speed(raw, || {
             let merge = Merge::open(&files, Wanted::Whole)?;
-            Ok(drop(merge.rows(|_| Ok::<(), juggler_film::PartError>(()))?))
+            merge.rows(|_| Ok::<(), PartError>(()))?;
+            Ok(())
         })?;
         let share = bytes as f64 / raw as f64;
         let megabytes = raw as f64 * 1e-6;
