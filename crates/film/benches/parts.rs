@@ -5,10 +5,11 @@
 use juggler::prelude::*;
 use juggler::tracer::film::{BLOCK, Layout, Rect, Run, Sum, Tile};
 use juggler_film::share::Work;
-use juggler_film::{Chunk, Description, Merge, Part, Share, Stop, Wanted, write};
+use juggler_film::{Chunk, Description, Merge, Part, PartError, Share, Stop, Wanted, write};
+use juggler_raybench::clock::{Of, Stopwatch};
 use std::error::Error;
+use std::hint::black_box;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 const SIZE: [u32; 2] = [640, 360];
 const REGION: Rect = Rect { x: 0, y: 0, width: SIZE[0], height: SIZE[1] };
@@ -55,13 +56,13 @@ fn description(samples: u32, share: Share) -> Description {
     }
 }
 
-/// Megabytes of plain floats a second, the best of some runs.
+/// Megabytes of plain floats in a second of one processor, the best of some runs.
 fn speed(raw: usize, mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let mut least = f64::INFINITY;
     for _ in 0..9 {
-        let start = Instant::now();
+        let watch = Stopwatch::start(Of::Thread);
         work()?;
-        least = least.min(start.elapsed().as_secs_f64());
+        least = least.min(watch.elapsed().cpu);
     }
     Ok(raw as f64 * 1e-6 / least)
 }
@@ -83,21 +84,27 @@ fn shares(folder: &Path, tiles: &[Tile], samples: u32) -> Result<Vec<PathBuf>, B
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("whole.jfilm");
-    println!("scene    blocks     raw MB  part/raw    pack   write    read   merge  (MB of plain floats a second)");
+    println!(
+        "scene    blocks     raw MB  part/raw    pack   write    read   merge  (MB of plain floats a second of one processor)"
+    );
     for (scene, blocks) in FILMS {
         let tiles = film(scene, blocks)?;
         let samples = blocks * BLOCK;
         let raw: usize = tiles.iter().flat_map(Tile::runs).map(|run| run.sums.len() * 36).sum();
         let whole = description(samples, Share::whole(samples));
-        let pack = speed(raw, || Ok(drop(tiles.iter().map(Chunk::encode).collect::<Vec<_>>())))?;
+        let pack = speed(raw, || {
+            black_box(tiles.iter().map(Chunk::encode).collect::<Vec<_>>());
+            Ok(())
+        })?;
         let numbered = || (0..).zip(tiles.iter().cloned());
         let bytes = write(&file, &whole, numbered())?;
-        let write = speed(raw, || Ok(drop(write(&file, &whole, numbered())?)))?;
+        let write = speed(raw, || Ok(write(&file, &whole, numbered()).map(|_| ())?))?;
         let read = speed(raw, || Ok(Part::open(&file)?.verify()?))?;
         let files = shares(folder.path(), &tiles, samples)?;
         let merge = speed(raw, || {
             let merge = Merge::open(&files, Wanted::Whole)?;
-            Ok(drop(merge.rows(|_| Ok::<(), juggler_film::PartError>(()))?))
+            merge.rows(|_| Ok::<(), PartError>(()))?;
+            Ok(())
         })?;
         let share = bytes as f64 / raw as f64;
         let megabytes = raw as f64 * 1e-6;

@@ -97,8 +97,8 @@ impl fmt::Display for Complaint {
             }
             Self::Unfinished { file } => write!(f, "{file}: is not finished; the same command goes on with it"),
             Self::Missing(ToDo::Shards { shards, count }) => {
-                let plural = if shards.len() == 1 { " is" } else { "s are" };
-                write!(f, "still to do: --shard {}/{count} ({} shard{plural} missing)", ranges(shards), shards.len())
+                let (plural, first) = (if shards.len() == 1 { "" } else { "s" }, shards.first().unwrap_or(&0));
+                write!(f, "still to do: shard{plural} {} of {count} (--shard {first}/{count})", ranges(shards))
             }
             Self::Missing(ToDo::Samples(gaps)) => missing(f, gaps),
         }

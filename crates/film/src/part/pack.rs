@@ -18,61 +18,60 @@ const SPREAD: usize = 32;
 
 /// The packed sums of some pixels.
 pub(super) fn pack(sums: &[Sum]) -> Vec<u8> {
-    let groups = groups(sums.len());
-    let mut planes = vec![0; groups * (TOTAL + SPREAD)];
-    let (totals, spreads) = planes.split_at_mut(groups * TOTAL);
-    to_planes(&differences(sums, TOTAL, |sum, channel| sum.total[channel].to_bits()), totals);
-    to_planes(&differences(sums, SPREAD, |sum, channel| sum.spread[channel].to_bits().into()), spreads);
+    let plane = plane(sums.len());
+    let mut planes = vec![0; plane * (TOTAL + SPREAD)];
+    let (totals, spreads) = planes.split_at_mut(plane * TOTAL);
+    to_planes(differences(sums, TOTAL, |sum, channel| sum.total[channel].to_bits()), totals);
+    to_planes(differences(sums, SPREAD, |sum, channel| sum.spread[channel].to_bits().into()), spreads);
     lz4_flex::block::compress(&planes)
 }
 
 /// The sums of so many pixels; `None` when the bytes hold something else.
 pub(super) fn unpack(packed: &[u8], pixels: usize) -> Option<Vec<Sum>> {
-    let groups = groups(pixels);
-    let mut planes = vec![0; groups * (TOTAL + SPREAD)];
+    let plane = plane(pixels);
+    let mut planes = vec![0; plane * (TOTAL + SPREAD)];
     let length = lz4_flex::block::decompress_into(packed, &mut planes).ok()?;
     if length != planes.len() {
         return None;
     }
-    let (totals, spreads) = planes.split_at(groups * TOTAL);
+    let (totals, spreads) = planes.split_at(plane * TOTAL);
     let mut sums = vec![Sum::default(); pixels];
-    restore(&mut sums, &from_planes(totals, groups), |sum, channel, bits| sum.total[channel] = f64::from_bits(bits));
+    restore(&mut sums, &from_planes(totals, plane), |sum, channel, bits| sum.total[channel] = f64::from_bits(bits));
     // Only 32 planes were there: what the additions carry beyond is cut off.
-    restore(&mut sums, &from_planes(spreads, groups), |sum, channel, bits| {
+    restore(&mut sums, &from_planes(spreads, plane), |sum, channel, bits| {
         sum.spread[channel] = f32::from_bits(bits as u32);
     });
     Some(sums)
 }
 
-/// Values go into planes by eight, a byte of each plane.
-fn groups(pixels: usize) -> usize {
-    (pixels * CHANNELS).div_ceil(8)
+/// Bytes of a plane: values go into planes by 64, a word of each plane.
+fn plane(pixels: usize) -> usize {
+    (pixels * CHANNELS).div_ceil(64) * 8
 }
 
 /// Channel after channel, each pixel's bits less those of the pixel before: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
 fn differences(sums: &[Sum], width: usize, bits: impl Fn(&Sum, usize) -> u64) -> Vec<u64> {
     let unused = 64 - width;
-    let mut values = Vec::with_capacity(groups(sums.len()) * 8);
+    let values = plane(sums.len()) * 8;
+    let mut differences = Vec::with_capacity(values);
     for channel in 0..CHANNELS {
         let mut previous = 0;
-        for sum in sums {
+        differences.extend(sums.iter().map(|sum| {
             let bits = bits(sum, channel);
             let difference = (bits.wrapping_sub(previous) << unused).cast_signed() >> unused;
-            values.push(((difference << 1) ^ (difference >> 63)).cast_unsigned());
             previous = bits;
-        }
+            ((difference << 1) ^ (difference >> 63)).cast_unsigned()
+        }));
     }
-    values.resize(groups(sums.len()) * 8, 0);
-    values
+    differences.resize(values, 0);
+    differences
 }
 
 /// The way back from [`differences`].
 fn restore(sums: &mut [Sum], differences: &[u64], put: impl Fn(&mut Sum, usize, u64)) {
-    let mut differences = differences.iter();
-    for channel in 0..CHANNELS {
+    for (channel, differences) in differences.chunks(sums.len().max(1)).take(CHANNELS).enumerate() {
         let mut bits = 0u64;
-        // The slice first: a zip that ends with it takes no difference too many.
-        for (sum, value) in sums.iter_mut().zip(&mut differences) {
+        for (sum, value) in sums.iter_mut().zip(differences) {
             bits = bits.wrapping_add((value >> 1) ^ (value & 1).wrapping_neg());
             put(sum, channel, bits);
         }
@@ -80,40 +79,42 @@ fn restore(sums: &mut [Sum], differences: &[u64], put: impl Fn(&mut Sum, usize, 
 }
 
 /// Bit b of value v goes to bit v % 8 of byte v / 8 of plane b.
-fn to_planes(values: &[u64], planes: &mut [u8]) {
-    let groups = values.len() / 8;
-    for (group, values) in values.as_chunks::<8>().0.iter().enumerate() {
-        let bytes = values.map(u64::to_le_bytes);
-        for (byte, planes) in planes.chunks_exact_mut(groups * 8).enumerate() {
-            let rows = transposed(u64::from_le_bytes(bytes.map(|bytes| bytes[byte]))).to_le_bytes();
-            for (plane, row) in planes.chunks_exact_mut(groups).zip(rows) {
-                plane[group] = row;
-            }
+fn to_planes(mut values: Vec<u64>, planes: &mut [u8]) {
+    let plane = values.len() / 8;
+    for (at, words) in values.as_chunks_mut().0.iter_mut().enumerate() {
+        transpose(words);
+        for (plane, word) in planes.chunks_exact_mut(plane).zip(words) {
+            plane.as_chunks_mut().0[at] = word.to_le_bytes();
         }
     }
 }
 
 /// The way back from [`to_planes`].
-fn from_planes(planes: &[u8], groups: usize) -> Vec<u64> {
-    let mut values = Vec::with_capacity(groups * 8);
-    for group in 0..groups {
-        let mut bytes = [[0; 8]; 8];
-        for (byte, planes) in planes.chunks_exact(groups * 8).enumerate() {
-            let mut rows = [0; 8];
-            rows.iter_mut().zip(planes.chunks_exact(groups)).for_each(|(row, plane)| *row = plane[group]);
-            let columns = transposed(u64::from_le_bytes(rows)).to_le_bytes();
-            bytes.iter_mut().zip(columns).for_each(|(value, column)| value[byte] = column);
+fn from_planes(planes: &[u8], plane: usize) -> Vec<u64> {
+    let mut values = vec![0; plane * 8];
+    for (at, values) in values.as_chunks_mut().0.iter_mut().enumerate() {
+        for (word, plane) in values.iter_mut().zip(planes.chunks_exact(plane)) {
+            *word = u64::from_le_bytes(plane.as_chunks().0[at]);
         }
-        values.extend(bytes.map(u64::from_le_bytes));
+        transpose(values);
     }
     values
 }
 
-/// A matrix of 8 × 8 bits, mirrored at its diagonal (Warren, Hacker's Delight, 2nd edition 2012, section 7-3).
-fn transposed(mut x: u64) -> u64 {
-    for (shift, mask) in [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)] {
-        let swapped = (x ^ (x >> shift)) & mask;
-        x ^= swapped ^ (swapped << shift);
+/// Mirrors a matrix of 64 × 64 bits at its diagonal: first its quarters change places, then theirs, and so on
+/// (Warren, Hacker's Delight, 2nd edition 2012, section 7-3).
+fn transpose(matrix: &mut [u64; 64]) {
+    let (mut size, mut mask) = (32, u64::from(u32::MAX));
+    while size > 0 {
+        for rows in matrix.chunks_exact_mut(2 * size) {
+            let (upper, lower) = rows.split_at_mut(size);
+            for (a, b) in upper.iter_mut().zip(lower) {
+                let swapped = ((*a >> size) ^ *b) & mask;
+                *a ^= swapped << size;
+                *b ^= swapped;
+            }
+        }
+        size /= 2;
+        mask ^= mask << size;
     }
-    x
 }
