@@ -170,7 +170,7 @@ fn all_that_is_wrong_is_said_at_once() {
   13.jfilm: is of another picture than 0.jfilm: frame: 3 instead of 2.4000000000000004; scene: other instead of 5ce4e
   11.jfilm: is damaged: its head or index is not what was written
   14b.jfilm: holds samples that 14.jfilm holds too, of {tiles} tiles
-  still to do: --shard 3,7-9,11-13/20 (7 shards are missing)",
+  still to do: shards 3,7-9,11-13 of 20 (--shard 3/20)",
         bytes.len()
     );
     let mut found: Vec<String> = folder.complaints(&files).lines().map(String::from).collect();
@@ -219,7 +219,7 @@ fn damaged_chunks_are_found_before_anything_is_merged() {
     std::fs::write(&files[1], bytes).unwrap();
     let complaints = folder.complaints(&files);
     assert!(complaints.contains("1.jfilm: is damaged: the bytes of tile"), "{complaints}");
-    assert!(complaints.contains("still to do: --shard 1/3 (1 shard is missing)"), "{complaints}");
+    assert!(complaints.contains("still to do: shard 1 of 3 (--shard 1/3)"), "{complaints}");
 }
 
 #[test]
@@ -237,7 +237,7 @@ fn parts_that_noise_ends_have_as_many_samples_as_they_needed() {
     folder.part("1.jfilm", &unfinished, &units(1));
     let expected = "the parts cannot be merged:
   1.jfilm: is not finished; the same command goes on with it
-  still to do: --shard 1/2 (1 shard is missing)";
+  still to do: shard 1 of 2 (--shard 1/2)";
     assert_eq!(folder.complaints(&files), expected);
 }
 
