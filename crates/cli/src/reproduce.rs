@@ -8,7 +8,7 @@ use juggler::{Limit, Settings};
 use std::fmt::Display;
 
 /// In a command, the file that carries it.
-pub const THIS_FILE: &str = "{this file}";
+const THIS_FILE: &str = "{this file}";
 /// The text of a picture that says how many samples each of its tiles got.
 pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 
@@ -38,6 +38,11 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
     words.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
     words.0
+}
+
+/// A command as the file tells it that carries it.
+pub fn told_by(file: &str, command: &str) -> String {
+    command.replace(THIS_FILE, &quoted(file))
 }
 
 struct Words(String);

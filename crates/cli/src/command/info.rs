@@ -6,6 +6,7 @@ mod part;
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, counted};
+use crate::reproduce;
 use crate::source;
 use clap::Args;
 use juggler::film;
@@ -52,7 +53,10 @@ impl Info {
     }
 
     fn picture(&self, format: Format) -> Result<(), Failure> {
-        let Facts { width, height, metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+        let Facts { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+        for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
+            *text = reproduce::told_by(&self.scene, text);
+        }
         if self.json {
             let texts: Map<String, Value> = metadata.into_iter().map(|(key, text)| (key, text.into())).collect();
             let name = format.ending();

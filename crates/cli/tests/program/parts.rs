@@ -98,6 +98,31 @@ fn shards_make_the_picture() {
 }
 
 #[test]
+fn shards_that_were_killed_are_done_again_and_doubled_ones_are_named() {
+    let folder = Folder::new();
+    let picture = "ball.json --size 160x120 --samples 400";
+    folder.good(&format!("render {picture} -o straight.png -q"));
+    for index in [3, 0, 4, 1, 2] {
+        let line = format!("render {picture} -q --shard {index}/5 -o part{index}.jfilm --checkpoint kept{index}.jfilm");
+        if index == 4 || index == 1 {
+            let flags = format!("{line} --checkpoint-every 0.005");
+            let mut child = folder.command(&flags).stderr(Stdio::null()).spawn().unwrap();
+            sleep(Duration::from_millis(60));
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+        folder.good(&line);
+    }
+    folder.good("merge part2.jfilm part0.jfilm part4.jfilm part3.jfilm part1.jfilm -o merged.png -q");
+    assert_eq!(fs::read(folder.path("merged.png")).unwrap(), fs::read(folder.path("straight.png")).unwrap());
+    fs::copy(folder.path("part3.jfilm"), folder.path("copy.jfilm")).unwrap();
+    let all = "merge part2.jfilm copy.jfilm part0.jfilm part4.jfilm part3.jfilm part1.jfilm -o again.png -q";
+    let message = folder.bad(all, 2);
+    assert!(message.contains("part3.jfilm: holds samples that copy.jfilm holds too"), "{message}");
+    assert!(!folder.files().contains(&"again.png".to_owned()));
+}
+
+#[test]
 fn clusters_number_their_shards() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} -q --shard 1/3 -o typed.jfilm"));
@@ -154,4 +179,8 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
     assert!(folder.bad("render ball.json --samples-from timed.png", 2).contains("another picture"));
     folder.good(&format!("render {BALL} -o plain.png -q"));
     assert!(folder.bad(&format!("render {BALL} --samples-from plain.png"), 2).contains("does not say"));
+    // The command that a picture tells names the picture itself, wherever it lies now.
+    fs::rename(folder.path("timed.png"), folder.path("moved.png")).unwrap();
+    let told = folder.good("info moved.png").stdout;
+    assert!(told.contains("--samples-from moved.png"), "{told}");
 }
