@@ -1,0 +1,97 @@
+//! `--noise` keeps its word: the true error, against a picture of 64 times the samples and another seed, is what was
+//! asked for. Errors are relative, as `Tile::relative_variance` estimates them, and looked at where noise ended the
+//! picture: elsewhere the least number of samples is better than was asked for.
+//!
+//! `JUGGLER_NOISE=all cargo test --release -p juggler-golden --test noise -- --nocapture` prints the figures of more
+//! scenes, larger; the usual run is against 16 times the samples.
+
+#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test that tells its figures")]
+
+use juggler::math::Rgb;
+use juggler::scene::Scene;
+use juggler::tracer::film::Film;
+use juggler::tracer::render::Control;
+use juggler::{Limit, Picture, Settings};
+
+/// Samples from which noise is told.
+const LEAST: u32 = 64;
+/// The true error may be so much larger than was asked for.
+const ABOVE: f64 = 1.5;
+/// And so much smaller: where samples are spread well, they are better than their spread tells.
+const BELOW: f64 = 0.6;
+
+/// What is compared, and with what.
+struct Extent {
+    size: [u32; 2],
+    /// Times the samples.
+    reference: u32,
+    scenes: &'static [(&'static str, f32)],
+}
+
+const USUAL: Extent = Extent { size: [64, 48], reference: 16, scenes: &[("cornell-cube", 0.003), ("step-12b", 0.02)] };
+const ALL: Extent = Extent {
+    size: [96, 64],
+    reference: 64,
+    scenes: &[
+        ("cornell-cube", 0.003),
+        ("step-12b", 0.02),
+        ("juggler", 0.02),
+        ("depth-of-field", 0.01),
+        ("step-11", 0.015),
+        ("chess", 0.006),
+    ],
+};
+
+fn exposed(name: &str, size: [u32; 2], samples: u32, seed: u64, limit: Limit) -> Film {
+    let settings =
+        Settings { size: Some(size), samples: Some(samples), seed: Some(seed), limit, ..Settings::default() };
+    let picture = Picture::new(&Scene::built_in(name).unwrap(), &settings).unwrap();
+    let film = picture.film();
+    picture.expose(&film, &Control::default()).unwrap();
+    film
+}
+
+/// Mean square of the relative errors of a tile's pixels.
+fn error(pixels: &[Rgb], reference: &[Rgb]) -> f64 {
+    let square = |(pixel, exact): (&Rgb, &Rgb)| {
+        let (pixel, exact) = (pixel.to_array().map(f64::from), exact.to_array().map(f64::from));
+        let gray = exact.iter().sum::<f64>() / 3.0;
+        let apart = pixel.iter().zip(exact).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 3.0;
+        apart / (gray * gray + 0.01)
+    };
+    pixels.iter().zip(reference).map(square).sum::<f64>() / pixels.len() as f64
+}
+
+/// How far from the level the error is, over the tiles that noise ended, and of the worst of them.
+fn compare(name: &str, level: f32, extent: &Extent) -> (f64, f64) {
+    let film = exposed(name, extent.size, 4096, 0, Limit::Noise(level));
+    let counts = film.counts();
+    let ended: Vec<usize> = (0..film.len()).filter(|place| counts[*place] > LEAST).collect();
+    assert!(ended.len() > 3, "{name}: noise ended {} tiles", ended.len());
+    let mean = ended.iter().map(|place| counts[*place]).sum::<u32>() / ended.len() as u32;
+    let reference = exposed(name, extent.size, mean * extent.reference, 99, Limit::Samples);
+    let means = |film: &Film, place: usize| film.tile(place).unwrap().means();
+    let errors: Vec<f64> =
+        ended.iter().map(|place| error(&means(&film, *place), &means(&reference, *place)).sqrt()).collect();
+    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    let worst = errors.iter().copied().fold(0.0, f64::max);
+    let level = f64::from(level);
+    println!(
+        "{name}: asked {level:.4}, true {rms:.4} ({:.2}), worst tile {worst:.4}, {} tiles of {}, {mean} samples",
+        rms / level,
+        ended.len(),
+        film.len()
+    );
+    (rms / level, worst / level)
+}
+
+#[test]
+fn the_true_error_is_the_one_that_was_asked_for() {
+    let all = std::env::var_os("JUGGLER_NOISE").is_some_and(|value| value == "all");
+    let extent = if all { &ALL } else { &USUAL };
+    for (name, level) in extent.scenes {
+        let (rms, worst) = compare(name, *level, extent);
+        assert!((BELOW..=ABOVE).contains(&rms), "{name}: {rms} times what was asked for");
+        assert!(worst <= ABOVE, "{name}: the worst tile has {worst} times what was asked for");
+    }
+}
