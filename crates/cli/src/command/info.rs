@@ -36,7 +36,7 @@ impl Info {
         if let Some(format) = picture_format(Path::new(&self.scene)) {
             return self.picture(format);
         }
-        let scene = source::load(&self.scene)?;
+        let scene = source::load(&self.scene, None)?;
         let compiled = scene.compile()?;
         if self.json {
             return console::print(&to_json(&self.scene, &scene, &compiled));
