@@ -74,7 +74,6 @@ pub struct Memory {
 impl Memory {
     /// Of a scene before its files are read and its world is built. A file's part is told from its size and head.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let scene = settings.apply(scene)?;
         let needs = scene.needs();
         let mut building = vec![part("the program", PROGRAM), part("the scene", of_scene(&needs))];
         let mut world = building.clone();
@@ -95,8 +94,8 @@ impl Memory {
             rendering: Vec::new(),
             text: needs.text,
             thread: THREAD + GROUP.saturating_mul(needs.rays * RAY + needs.shadows * SHADOW),
-            region: settings.region(scene.description.render.size)?,
-            samples: scene.description.render.samples,
+            region: settings.region(settings.size_of(scene))?,
+            samples: settings.samples_of(scene),
             in_bands: true,
         })
     }
@@ -123,13 +122,17 @@ impl Memory {
     /// With a film that is kept: one of `shards` of the pixels `crop`, or of all, with the `samples`, or all.
     #[must_use]
     pub fn on_film(mut self, crop: Option<Rect>, samples: Option<Range<u32>>, shards: u32) -> Self {
+        const UNIT: u64 = 160;
         let tile = u64::from(TILE * TILE);
         let area = crop.map_or(self.region, |crop| crop.intersection(&self.region)).area();
-        let pixels = (area / u64::from(shards.max(1))).saturating_add(2 * tile).min(area.max(tile));
-        let runs = render::most_runs(&samples.unwrap_or(0..self.samples)) + usize::from(shards > 1);
+        let (tiles, shards) = (area.div_ceil(tile), u64::from(shards.max(1)));
+        let pixels = (area / shards).saturating_add(2 * tile).min(area.max(tile));
+        // Where tiles are few, their samples are dealt out too.
+        let runs = render::most_runs(&samples.unwrap_or(0..self.samples)) + usize::from(tiles < 8 * shards);
+        let dealing = tiles.max(16 * shards).saturating_mul(UNIT);
         let row = u64::from(self.region.width) * u64::from(TILE) * 16;
         self.in_bands = false;
-        self.and("the film", Film::bytes(pixels, runs).saturating_add(row))
+        self.and("the film", Film::bytes(pixels, runs).saturating_add(dealing).saturating_add(row))
     }
 
     /// The pixels of the whole picture.

@@ -12,6 +12,8 @@ use std::path::Path;
 
 /// Bytes of the first look, which holds any sensible header, and smaller files as a whole.
 const HEAD: u64 = 1 << 20;
+/// Bytes of a look at the end, where a PLY has its faces.
+const TAIL: u64 = 1 << 18;
 /// Looks into a longer text, in even steps, and bytes of each.
 const LOOKS: u64 = 64;
 const LOOK: u64 = 1 << 14;
@@ -100,16 +102,16 @@ fn polygons(file: &mut File, head: &[u8], size: u64) -> io::Result<Counts> {
     let Some(Announced { vertices, vertex, faces, corners }) = ply::announced(head, size) else {
         return Ok(Counts::default());
     };
-    let corners = match corners {
-        Some(corners) => corners,
+    let triangles = match corners {
+        Some(corners) => corners.saturating_sub(faces.saturating_mul(2)),
         None => {
-            let tail = look(file, size.saturating_sub(HEAD / 4), HEAD / 4)?;
-            let rows = lines(&tail).filter_map(|line| words(line).next()?.parse::<u64>().ok());
-            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.min(1 << 10)));
+            let tail = look(file, size.saturating_sub(TAIL), TAIL)?;
+            let rows = lines(&tail).skip(1).filter_map(|line| words(line).next()?.parse::<u64>().ok());
+            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.clamp(3, 1 << 10) - 2));
             scaled(sum, faces, rows)
         }
-    };
-    let triangles = corners.saturating_sub(faces.saturating_mul(2)).max(faces);
+    }
+    .max(faces);
     // Polygons are kept as runs of triangles; arrays that turn out too small are copied into larger ones.
     let aside = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
     Ok(Counts { vertices, triangles, vertex, aside })
@@ -206,4 +208,59 @@ fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 fn words(line: &[u8]) -> impl Iterator<Item = &str> {
     std::str::from_utf8(line).unwrap_or_default().split_ascii_whitespace()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(name: &str, bytes: &[u8]) -> Estimate {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        estimate(&path).unwrap()
+    }
+
+    fn ply(format: &str, body: &[u8]) -> Vec<u8> {
+        let head = format!(
+            "ply\nformat {format} 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+             element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nend_header\n"
+        );
+        [head.as_bytes(), body].concat()
+    }
+
+    #[test]
+    fn a_binary_ply_is_known_by_its_head_and_length() {
+        // A quadrilateral and a triangle, with a colour each.
+        let body = vec![0; 4 * 12 + (1 + 4 * 4 + 1) + (1 + 3 * 4 + 1)];
+        let found = of("a.ply", &ply("binary_little_endian", &body));
+        assert_eq!((found.triangles, found.kept), (3, 4 * 12 + 3 * (FACE + BUILT)));
+        let text = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 9\n3 0 1 2 9\n";
+        assert!((3..9).contains(&of("a.ply", &ply("ascii", text.as_bytes())).triangles));
+        let lies = ply("binary_little_endian", &[]);
+        let lies = String::from_utf8(lies).unwrap().replace("face 2", "face 2000000000");
+        assert_eq!(of("a.ply", lies.as_bytes()), Estimate { peak: lies.len() as u64, ..Estimate::default() });
+    }
+
+    #[test]
+    fn texts_are_counted() {
+        let small = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1 4//1\nf 1//2 2//2 3//2\n";
+        let found = of("a.obj", small.as_bytes());
+        // Seven different corners, more than there are positions.
+        assert_eq!((found.triangles, found.kept), (3, 7 * 24 + 3 * (FACE + BUILT)));
+        // Of a long one only parts are looked at.
+        let long: String = (0..50_000).map(|i| format!("v {i} {} 0\n", i / 7)).collect();
+        let faces: String = (0..40_000).map(|i| format!("f {} {} {} {}\n", i + 1, i + 2, i + 3, i + 4)).collect();
+        let found = of("a.obj", format!("{long}{faces}").as_bytes());
+        assert!((80_000..96_000).contains(&found.triangles), "{found:?}");
+    }
+
+    #[test]
+    fn soups_and_what_is_no_mesh() {
+        let mut stl = vec![0; 84 + 50 * 10];
+        stl[80] = 10;
+        assert_eq!(of("a.stl", &stl).triangles, 10);
+        assert_eq!(of("a.xyz", b"\x7fELF"), Estimate::default());
+        assert!(estimate(Path::new("there is none.ply")).is_err());
+    }
 }

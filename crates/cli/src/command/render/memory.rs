@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::format::bytes;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::{Encoding, Plan, Product, Shot};
+use juggler::Limit;
 use juggler::imaging::Header;
 use juggler::memory::{Effort, Memory, Part, sum};
 use juggler::scene::Scene;
@@ -52,6 +53,11 @@ fn refused(plan: &Plan, parts: &[Part], most: u64) -> Failure {
 fn help(plan: &Plan, largest: &Part, needed: u64, most: u64) -> String {
     let shards = needed.div_ceil(most.max(1)).saturating_mul(2);
     let advice = match largest.what.as_str() {
+        "the film" if plan.settings.limit != Limit::Samples => {
+            "a film with so many samples holds several sums a pixel; a lower bound (`--samples`) needs less, as does a \
+             smaller `--size`"
+                .into()
+        }
         "the film" if plan.product == Product::Part => {
             format!("more and smaller parts need less, such as `--shard 0/{shards}`; so does a smaller `--size`")
         }
