@@ -69,7 +69,7 @@ pub fn estimate(path: &Path) -> Result<Estimate, ImportError> {
     let mut file = File::open(path).map_err(failed)?;
     let head = look(&mut file, 0, HEAD).map_err(failed)?;
     let counts = match format(path, &head, size) {
-        Some(Format::Stl) if stl::announced(&head) == Some(size) => soup(size / stl::FACET),
+        Some(Format::Stl) if stl::announced(&head) == Some(size) => soup((size / stl::FACET).saturating_sub(1)),
         Some(Format::Stl) => soup(sample(&mut file, head, size).map_err(failed)?.facets),
         Some(Format::Obj) => sample(&mut file, head, size).map_err(failed)?.wavefront(),
         Some(Format::Ply) => polygons(&mut file, &head, size).map_err(failed)?,
@@ -107,7 +107,8 @@ fn polygons(file: &mut File, head: &[u8], size: u64) -> io::Result<Counts> {
         None => {
             let tail = look(file, size.saturating_sub(TAIL), TAIL)?;
             let rows = lines(&tail).skip(1).filter_map(|line| words(line).next()?.parse::<u64>().ok());
-            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.clamp(3, 1 << 10) - 2));
+            let rows = rows.filter(|corners| *corners >= 3);
+            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.min(1 << 10) - 2));
             scaled(sum, faces, rows)
         }
     }
