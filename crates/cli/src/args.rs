@@ -130,7 +130,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Machine")]
     pub threads: Option<u16>,
 
-    /// Refuse to render what needs more memory
+    /// Stay within so much memory: smaller bands, fewer threads; what needs more is refused before it is read
     #[arg(long, value_name = "SIZE", value_parser = value::memory, help_heading = "Machine")]
     pub max_memory: Option<u64>,
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::format::bytes;
+use juggler::scene::document::bytes_to_read;
 use juggler::scene::suggest::closest;
 use juggler::scene::{Scene, built_in_scenes};
 use std::io::Read;
@@ -16,13 +17,20 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Most names of files that are looked through for what was meant.
 const MAX_NAMES: usize = 10_000;
 
-/// Reads a scene file; what is no file may be the name of a built-in scene.
-pub fn load(name: &str) -> Result<Scene, Failure> {
+/// Reads a scene file; what is no file may be the name of a built-in scene. A text that needs more than `most` bytes of
+/// memory is refused.
+pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     if name == STANDARD_INPUT {
-        return Ok(Scene::from_json(standard_input()?, STANDARD_INPUT_NAME)?);
+        let text = standard_input()?;
+        check_memory(bytes_to_read(text.as_bytes()), STANDARD_INPUT_NAME, most)?;
+        return Ok(Scene::from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
     if path.exists() && !path.is_dir() {
+        if most.is_some() && path.is_file() {
+            check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
+            check_memory(std::fs::read(path).map_or(0, |text| bytes_to_read(&text)), name, most)?;
+        }
         return Ok(Scene::load(path)?);
     }
     if built_in_scenes().iter().any(|scene| scene.name == name) {
@@ -32,6 +40,17 @@ pub fn load(name: &str) -> Result<Scene, Failure> {
         return Err(Failure::Wrong(format!("`{name}` is a folder, not a scene file")));
     }
     Err(unknown(name, "scene", built_in_scenes().iter().map(|scene| scene.name)))
+}
+
+fn check_memory(needed: u64, name: &str, most: Option<u64>) -> Result<(), Failure> {
+    match most {
+        Some(most) if needed > most => Err(Failure::Wrong(format!(
+            "the scene `{name}` needs about {} of memory to be read, more than --max-memory {}",
+            bytes(needed),
+            bytes(most)
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn standard_input() -> Result<String, Failure> {

@@ -65,6 +65,7 @@ struct Film<'s> {
 #[derive(Debug, Serialize)]
 struct Memory {
     peak_rss_bytes: Option<u64>,
+    expected_bytes: Option<u64>,
     geometry_bytes: usize,
     bvh_bytes: usize,
 }
@@ -98,12 +99,18 @@ impl<'s> Stats<'s> {
             },
             memory: Memory {
                 peak_rss_bytes: peak_rss_bytes(),
+                expected_bytes: None,
                 geometry_bytes: geometry.geometry_bytes,
                 bvh_bytes: geometry.bvh_bytes,
             },
             film: Film { mean: film.mean, hash: &film.hash },
             fingerprint: picture.fingerprint().hash(),
         }
+    }
+
+    /// With the bytes that were thought to be needed before the world was built.
+    pub fn expected_memory(&mut self, bytes: u64) {
+        self.memory.expected_bytes = Some(bytes);
     }
 
     /// The object on one line.

@@ -23,6 +23,7 @@
 
 mod error;
 mod kinds;
+pub mod memory;
 mod part;
 mod picture;
 pub mod prelude;

@@ -6,13 +6,10 @@ use juggler_math::{Image, Rgb, UVec2};
 use juggler_scene::{Compiled, Fingerprint, Scene};
 use juggler_tracer::camera::Projection;
 use juggler_tracer::film::{Digest, Filter, Rect, Summary};
-use juggler_tracer::render::{self, Control, Job, Rays, Scheduler, Stopped};
+use juggler_tracer::render::{self, BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
 use juggler_tracer::world::{SimdLevel, World};
 use std::path::Path;
 use std::time::{Duration, Instant};
-
-/// Memory of a thread's queues of rays.
-const THREAD_BYTES: u64 = 8 << 20;
 
 /// The program as files name it.
 pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
@@ -25,6 +22,7 @@ pub struct Picture {
     tone: Tone,
     limit: Limit,
     fingerprint: Fingerprint,
+    band_pixels: u64,
 }
 
 /// What is to be known about a render besides its pixels.
@@ -50,7 +48,7 @@ impl Picture {
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
         let (tone, limit, fingerprint) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
-        let mut picture = Self { projection, region, tone, limit, fingerprint, compiled };
+        let mut picture = Self { projection, region, tone, limit, fingerprint, compiled, band_pixels: BAND_PIXELS };
         picture.complete_fingerprint();
         Ok(picture)
     }
@@ -58,6 +56,14 @@ impl Picture {
     /// The same picture for another vector unit than the best of this machine: for tests and measurements.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.compiled.world = self.compiled.world.with_simd_level(level);
+        self
+    }
+
+    /// Has fewer or more pixels in memory at once when rows go straight to their file, rounded to whole rows of tiles;
+    /// without, some four million. No picture depends on it.
+    #[must_use]
+    pub fn with_bands(mut self, pixels: u64) -> Self {
+        self.band_pixels = pixels;
         self
     }
 
@@ -129,14 +135,6 @@ impl Picture {
         Header { tone: self.tone.clone(), options, metadata, ..Header::new(width, height) }
     }
 
-    /// Bytes that rendering holds at once, the file format's own not among them.
-    pub fn memory_needed(&self, threads: usize) -> u64 {
-        let geometry = self.world().geometry();
-        let world = (geometry.geometry_bytes as u64).saturating_add(geometry.bvh_bytes as u64);
-        let queues = THREAD_BYTES.saturating_mul(threads as u64);
-        world.saturating_add(render::band_bytes(self.region)).saturating_add(queues)
-    }
-
     /// The engine's view of it.
     pub fn job(&self) -> Job<'_> {
         let settings = &self.compiled.settings;
@@ -162,7 +160,8 @@ impl Picture {
     ) -> Result<Summary, E> {
         let [width, height] = self.size();
         let mut digest = Digest::new(width, height);
-        render::render(&self.job(), self.region, scheduler, control, |band: &[Rgb]| {
+        let schedule = Schedule { scheduler, band_pixels: self.band_pixels };
+        render::render(&self.job(), self.region, schedule, control, |band: &[Rgb]| {
             digest.update(band);
             rows(band)
         })

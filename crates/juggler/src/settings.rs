@@ -82,6 +82,7 @@ pub struct Settings {
 impl Settings {
     /// The scene as it is wished for.
     pub fn apply(&self, scene: &Scene) -> Result<Scene, Error> {
+        let (size, samples) = (self.size_of(scene), self.samples_of(scene));
         let mut scene = scene.clone();
         let description = &mut scene.description;
         if let Some(name) = &self.camera {
@@ -90,8 +91,7 @@ impl Settings {
             description.render.camera = Some(CameraName(name.clone()));
         }
         let render = &mut description.render;
-        render.size = self.size.unwrap_or(render.size);
-        render.samples = self.samples.unwrap_or(self.limit.most(render.samples));
+        (render.size, render.samples) = (size, samples);
         render.seed = self.seed.unwrap_or(render.seed);
         if let Some(name) = self.integrator.as_deref().filter(|name| *name != render.integrator.name()) {
             render.integrator = by_name("integrator", name)?;
@@ -104,6 +104,16 @@ impl Settings {
         }
         description.tone.exposure_stops = self.exposure_stops.unwrap_or(description.tone.exposure_stops);
         Ok(scene)
+    }
+
+    /// Width and height in pixels.
+    pub fn size_of(&self, scene: &Scene) -> [u32; 2] {
+        self.size.unwrap_or(scene.description.render.size)
+    }
+
+    /// Samples of a pixel, or the most of them.
+    pub fn samples_of(&self, scene: &Scene) -> u32 {
+        self.samples.unwrap_or(self.limit.most(scene.description.render.samples))
     }
 
     /// The part of a picture of this size that is rendered.

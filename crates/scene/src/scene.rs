@@ -1,6 +1,6 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::compile::{Assembly, Compiled, Files, Library};
+use crate::compile::{Assembly, Compiled, Files, Library, Needs};
 use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, read_text};
 use crate::fingerprint::Fingerprint;
@@ -145,6 +145,11 @@ impl Scene {
             return Err(SceneError::Problems(problems));
         }
         Ok(assembly.compile(self.description.render.clone(), problems))
+    }
+
+    /// What building the world will need memory for; no file is read for it.
+    pub fn needs(&self) -> Needs {
+        Needs::of(&self.description, self.files())
     }
 
     /// Everything that decides the pixels, however many samples are taken.

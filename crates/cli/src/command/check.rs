@@ -16,7 +16,7 @@ pub struct Check {
 impl Check {
     /// Prints what is wrong; warnings alone are no reason to say no.
     pub fn run(self) -> Result<(), Failure> {
-        match source::load(&self.scene) {
+        match source::load(&self.scene, None) {
             Ok(scene) => self.answer(&scene.check()),
             Err(Failure::Scene(problems)) => self.answer(&problems),
             Err(failure) => Err(failure),

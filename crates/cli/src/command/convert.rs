@@ -20,7 +20,7 @@ pub struct Convert {
 impl Convert {
     /// Writes the scene.
     pub fn run(self) -> Result<(), Failure> {
-        let scene = source::load(&self.scene)?.at_frame(f64::from(self.frame))?;
+        let scene = source::load(&self.scene, None)?.at_frame(f64::from(self.frame))?;
         output::write_text(&self.output, &scene.to_json())
     }
 }

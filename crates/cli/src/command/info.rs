@@ -44,7 +44,7 @@ impl Info {
         if film::is_part(&start) {
             return console::print(&part::text(path, self.json)?);
         }
-        let scene = source::load(&self.scene)?;
+        let scene = source::load(&self.scene, None)?;
         let compiled = scene.compile()?;
         if self.json {
             return console::print(&to_json(&self.scene, &scene, &compiled));

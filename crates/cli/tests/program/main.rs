@@ -5,6 +5,7 @@
 mod answers;
 mod errors;
 mod harness;
+mod memory;
 mod merging;
 mod meshes;
 mod parts;

@@ -33,7 +33,7 @@ fn the_keys_are_those_that_were_promised() {
     assert_eq!(keys(&stats["seconds"]), ["load", "build", "render", "denoise", "write", "total"]);
     assert_eq!(keys(&stats["rays"]), ["camera", "shadow", "secondary", "total", "per_second"]);
     assert_eq!(keys(&stats["geometry"]), ["shapes", "triangles", "unique_triangles", "instances", "lights"]);
-    assert_eq!(keys(&stats["memory"]), ["peak_rss_bytes", "geometry_bytes", "bvh_bytes"]);
+    assert_eq!(keys(&stats["memory"]), ["peak_rss_bytes", "expected_bytes", "geometry_bytes", "bvh_bytes"]);
     assert_eq!(keys(&stats["film"]), ["mean", "hash"]);
     assert_eq!((&stats["version"], &stats["scene"], &stats["threads"]), (&1.into(), &"ball.json".into(), &2.into()));
     assert_eq!((&stats["size"], &stats["samples"]), (&serde_json::json!([16, 9]), &2.into()));

@@ -54,6 +54,12 @@ pub fn count(scene: &Description) -> Result<Counts<'_>, Vec<Finding>> {
     if findings.is_empty() { Ok(counts) } else { Err(findings) }
 }
 
+/// Objects that a scene of these groups stores.
+pub fn stored(scene: &Description, counts: &Counts<'_>) -> u64 {
+    let shared = counts.values().filter(|count| count.is_shared).map(|count| count.stored);
+    shared.fold(store(&scene.objects, counts).0, u64::saturating_add)
+}
+
 fn too_many(placed: u64, stored: u64) -> Option<Finding> {
     if placed > MAX_OBJECTS {
         let message = format!("the scene places {placed} objects, the limit is {MAX_OBJECTS}");
@@ -171,17 +177,15 @@ fn objects_of<'s>(scene: &'s Description, group: &str) -> &'s [Object] {
 
 /// Decides for each group, those within it first, whether it is shared. Returns how many objects the scene stores.
 fn count_stored(scene: &Description, counts: &mut Counts<'_>) -> u64 {
-    let mut total = 0_u64;
     for i in 0..counts.len() {
         let Some((name, _)) = counts.get_index(i) else { continue };
-        let (stored, depth) = store(objects_of(scene, name), counts);
+        let (held, depth) = store(objects_of(scene, name), counts);
         let Some((_, count)) = counts.get_index_mut(i) else { continue };
         let many = count.placements > 1 && count.objects.saturating_mul(count.placements) > SHARED_FROM;
-        let is_shared = many && stored >= SHARED_SIZE && depth < world::MAX_DEPTH;
-        *count = Count { stored, depth, is_shared, ..*count };
-        total = total.saturating_add(if is_shared { stored } else { 0 });
+        let is_shared = many && held >= SHARED_SIZE && depth < world::MAX_DEPTH;
+        *count = Count { stored: held, depth, is_shared, ..*count };
     }
-    total.saturating_add(store(&scene.objects, counts).0)
+    stored(scene, counts)
 }
 
 /// Objects that are stored where `objects` stand, shared groups counted as one each, and the levels on the longest

@@ -14,11 +14,13 @@ mod count;
 mod defaults;
 mod materials;
 mod meshes;
+mod needs;
 mod placing;
 mod settings;
 
 pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub use meshes::{Files, Library};
+pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
 
 /// A scene ready to be rendered.

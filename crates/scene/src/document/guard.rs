@@ -42,6 +42,19 @@ pub fn text(bytes: Vec<u8>) -> Result<String, String> {
     Ok(text)
 }
 
+/// Bytes that reading and checking a scene of this text takes at once, about and not fewer: by its values and, as
+/// each has a name and room for more, the members of its objects.
+pub fn bytes_to_read(text: &[u8]) -> u64 {
+    const VALUE: u64 = 240;
+    const MEMBER: u64 = 1200;
+    let mark = |byte: &u8| match byte {
+        b',' | b'[' | b'{' => VALUE,
+        b':' => MEMBER,
+        _ => 0,
+    };
+    text.iter().map(mark).sum::<u64>() + text.len() as u64
+}
+
 /// Counts depth and values, so that the parser behind it can neither overflow the stack nor eat the memory.
 pub fn check(text: &str) -> Result<(), Refused> {
     let bytes = text.as_bytes();

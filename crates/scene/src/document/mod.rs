@@ -6,7 +6,7 @@ mod parse;
 mod source;
 mod tree;
 
-pub use guard::{MAX_BYTES, MAX_DEPTH, MAX_VALUES};
+pub use guard::{MAX_BYTES, MAX_DEPTH, MAX_VALUES, bytes_to_read};
 pub use include::MAX_FILES;
 pub use source::{FileId, Place, Source, Sources};
 pub use tree::{Member, Members, Node, Value};

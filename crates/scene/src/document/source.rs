@@ -68,6 +68,11 @@ impl Sources {
         self.files.is_empty()
     }
 
+    /// Bytes that it takes to read all of them, see [`bytes_to_read`](super::bytes_to_read).
+    pub fn bytes_to_read(&self) -> u64 {
+        self.files.iter().map(|source| super::bytes_to_read(source.text.as_bytes())).sum()
+    }
+
     /// The folder of the file that `place` lies in.
     pub fn folder(&self, place: Option<Place>) -> &Path {
         let source = place.and_then(|place| self.get(place.file)).or_else(|| self.files.first());

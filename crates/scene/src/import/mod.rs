@@ -13,6 +13,7 @@
 
 mod assemble;
 mod error;
+mod estimate;
 mod faces;
 mod obj;
 mod pieces;
@@ -25,6 +26,7 @@ mod text;
 mod weld;
 
 pub use error::{Fault, ImportError, Place};
+pub use estimate::{Estimate, estimate};
 
 use juggler_tracer::shape::MeshData;
 use pieces::PIECE;

@@ -1,7 +1,7 @@
 //! A film that stays in memory while it is exposed, and can be read meanwhile.
 
 use super::tile::Tile;
-use super::{Layout, TileError};
+use super::{Layout, Run, Sum, TILE, TileError};
 use juggler_math::Rgb;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -40,11 +40,14 @@ impl Film {
         Self { layout, cells }
     }
 
-    /// Bytes that a whole film of a region holds, a run a tile.
-    pub fn bytes(layout: &Layout) -> u64 {
-        let pixels = layout.region().area();
-        let tiles = layout.tiles().saturating_mul((size_of::<Cell>() + size_of::<super::Run>()) as u64);
-        pixels.saturating_mul(size_of::<super::Sum>() as u64).saturating_add(tiles)
+    /// Bytes that a film of so many pixels holds at most while each tile is in no more than `runs` runs of samples.
+    pub fn bytes(pixels: u64, runs: usize) -> u64 {
+        // Tiles are arrays of their own, which come and go while others stay: a sixth is lost between them.
+        const LOST: u64 = 6;
+        let sums = pixels.saturating_mul(size_of::<Sum>() as u64);
+        let tiles = (pixels / u64::from(TILE * TILE)).saturating_add(1);
+        let cells = tiles.saturating_mul((size_of::<Cell>() + size_of::<Run>()) as u64);
+        sums.saturating_add(sums / LOST).saturating_mul(runs as u64).saturating_add(cells)
     }
 
     /// How the region is cut.

@@ -4,7 +4,7 @@
 
 use super::wavefront::Engine;
 use super::{Control, Job, Stopped, Work};
-use crate::film::{BLOCK, Film};
+use crate::film::{BLOCK, Film, runs};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -44,6 +44,14 @@ pub fn expose(job: &Job, film: &Film, stop: Stop, control: &Control) -> Result<(
 /// Whether every tile of the film has enough.
 pub fn is_finished(film: &Film, stop: Stop) -> bool {
     (0..film.len()).all(|place| Round::after(film, stop, place, 0).is_none())
+}
+
+/// The most runs of samples that a tile may hold on its way to the samples `wanted`, each a [`Sum`](crate::film::Sum) a
+/// pixel: after some rounds the sums of a tile are not yet joined into one.
+pub fn most_runs(wanted: &Range<u32>) -> usize {
+    let next = |end: &u32| (*end < wanted.end).then(|| round_after(*end).min(wanted.end));
+    let ends = std::iter::successors(Some(wanted.start), next).skip(1);
+    ends.map(|end| runs(wanted.start..end).len()).max().unwrap_or(0)
 }
 
 /// Some samples of one tile.
@@ -215,6 +223,16 @@ mod tests {
         assert!(ends.windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_ROUND && pair[1] % BLOCK == 0));
         assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
         assert_eq!(round_after(70), 96, "within a round, to its end");
+    }
+
+    #[test]
+    fn runs_that_wait_to_be_joined_are_counted() {
+        let known = [(0, 0), (1, 1), (16, 1), (17, 2), (64, 1), (96, 2), (192, 2), (256, 2), (1024, 2), (1 << 16, 8)];
+        for (samples, runs) in known {
+            assert_eq!(most_runs(&(0..samples)), runs, "{samples}");
+        }
+        // 16 to 32, and 32 to 48 before it grows to 64.
+        assert_eq!(most_runs(&(16..64)), 2);
     }
 
     #[test]

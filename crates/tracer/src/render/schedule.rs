@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// Pixels that are held in memory at once, at least a row of tiles of them.
-const BAND_PIXELS: u64 = 4 << 20;
+/// Pixels that are held in memory at once where nobody says, at least a row of tiles of them.
+pub const BAND_PIXELS: u64 = 4 << 20;
 /// Samples of a tile that are worth a trip to the scheduler.
 const TILE_SAMPLES: u64 = 1 << 16;
 /// Edge of the largest tile.
@@ -29,6 +29,21 @@ pub enum Scheduler {
     StaticRows,
 }
 
+/// Who renders which pixels when: nothing that a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Schedule {
+    /// How pixels are handed out.
+    pub scheduler: Scheduler,
+    /// Pixels that are held in memory at once, rounded down to whole rows of tiles, at least one.
+    pub band_pixels: u64,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Self { scheduler: Scheduler::default(), band_pixels: BAND_PIXELS }
+    }
+}
+
 /// The render was cancelled before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the render was interrupted")]
@@ -39,12 +54,12 @@ pub struct Stopped;
 pub fn render<E: From<Stopped>>(
     job: &Job,
     region: Rect,
-    scheduler: Scheduler,
+    schedule: Schedule,
     control: &Control,
     mut rows: impl FnMut(&[Rgb]) -> Result<(), E>,
 ) -> Result<(), E> {
     let engines = Mutex::new(Vec::new());
-    for band in bands(region) {
+    for band in bands(region, schedule.band_pixels) {
         let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
         let draw = |pixels: Rect| {
             let recycled = lock(&engines).pop();
@@ -54,7 +69,7 @@ pub fn render<E: From<Stopped>>(
             }
             lock(&engines).push(engine);
         };
-        match scheduler {
+        match schedule.scheduler {
             Scheduler::WorkStealing => steal(&band, job.samples, draw),
             Scheduler::RowQueue => row_queue(&band, draw),
             Scheduler::StaticRows => static_rows(&band, draw),
@@ -67,9 +82,10 @@ pub fn render<E: From<Stopped>>(
     Ok(())
 }
 
-/// Bytes that [`render`] holds at once for finished pixels.
-pub fn band_bytes(region: Rect) -> u64 {
-    bands(region).next().map_or(0, |band| band.area() * size_of::<Rgb>() as u64)
+/// Bytes that [`render`] holds at once for bands of `pixels`: the finished ones, and the list of tiles.
+pub fn band_bytes(region: Rect, pixels: u64) -> u64 {
+    let tile = (size_of::<Rect>() as u64) / u64::from(MIN_TILE * MIN_TILE);
+    bands(region, pixels).next().map_or(0, |band| band.area() * (size_of::<Rgb>() as u64 + tile))
 }
 
 /// A poisoned lock only says that another thread panicked, which rayon passes on anyway.
@@ -78,8 +94,8 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 /// Cuts a region into bands of whole rows that fit in memory.
-fn bands(region: Rect) -> impl Iterator<Item = Rect> {
-    let tile_rows = BAND_PIXELS / (u64::from(region.width.max(1)) * u64::from(MAX_TILE));
+fn bands(region: Rect, pixels: u64) -> impl Iterator<Item = Rect> {
+    let tile_rows = pixels / (u64::from(region.width.max(1)) * u64::from(MAX_TILE));
     let height = (tile_rows.max(1) * u64::from(MAX_TILE)).min(u64::from(u32::MAX)) as u32;
     let end = region.y + region.height;
     (region.y..end).step_by(height as usize).map(move |y| Rect { y, height: height.min(end - y), ..region })
@@ -140,13 +156,16 @@ mod tests {
         let sizes = [(1, 1), (640, 360), (1920, 1080), (20_000, 20_000), (65_536, 3), (3, 65_536), (0, 0)];
         for (width, height) in sizes {
             let region = Rect { x: 2, y: 5, width, height };
-            let mut next = region.y;
-            for band in bands(region) {
-                assert_eq!((band.x, band.y, band.width), (2, next, width));
-                assert!(band.area() <= BAND_PIXELS.max(u64::from(width * MAX_TILE)));
-                next += band.height;
+            for pixels in [0, 1 << 16, BAND_PIXELS] {
+                let mut next = region.y;
+                for band in bands(region, pixels) {
+                    assert_eq!((band.x, band.y, band.width), (2, next, width));
+                    assert!(band.area() <= pixels.max(u64::from(width * MAX_TILE)));
+                    assert!(band.area() * 12 <= band_bytes(region, pixels));
+                    next += band.height;
+                }
+                assert_eq!(next, region.y + height, "{width}x{height}");
             }
-            assert_eq!(next, region.y + height, "{width}x{height}");
         }
     }
 

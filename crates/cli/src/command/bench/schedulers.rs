@@ -78,7 +78,7 @@ impl Schedulers {
         if self.scenes.is_empty() {
             return Ok(vec![("corner".into(), mirrors(6.0, -3.0)), ("bottom".into(), mirrors(0.0, -5.0))]);
         }
-        self.scenes.iter().map(|name| Ok((source::stem(name).to_owned(), source::load(name)?))).collect()
+        self.scenes.iter().map(|name| Ok((source::stem(name).to_owned(), source::load(name, None)?))).collect()
     }
 
     fn pools(&self) -> Result<Vec<ThreadPool>, Failure> {

@@ -1,21 +1,22 @@
 //! `juggler render`: one picture, or the pictures of an animation.
 
 mod film;
+mod memory;
 
 use crate::args::RenderArgs;
 use crate::console;
 use crate::failure::Failure;
-use crate::format::{amount, bytes, counted, duration};
+use crate::format::{amount, counted, duration};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{Encoding, Plan, Product, Shot};
+use crate::plan::{Plan, Product, Shot};
 use crate::progress::{Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
 use juggler::imaging::{self, Format, Header, RowWriter};
+use juggler::memory::{Effort, Memory};
 use juggler::scene::Scene;
-use juggler::tracer::film::Film;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
 use std::path::Path;
@@ -39,9 +40,7 @@ Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the s
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let plan = Plan::new(args)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(plan.threads).build();
-    let pool = pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?;
-    pool.install(|| Session { reporter: plan.progress.reporter(), plan }.all(start))
+    Session { reporter: plan.progress.reporter(), plan }.all(start)
 }
 
 /// All pictures of one command.
@@ -50,10 +49,23 @@ struct Session {
     reporter: Reporter,
 }
 
+/// A picture whose world is to be built.
+struct Ready<'t> {
+    scene: &'t Scene,
+    shot: &'t Shot,
+    memory: Memory,
+    effort: Effort,
+    load: Duration,
+    start: Instant,
+}
+
 /// A picture on its way.
 struct Take<'t> {
     shot: &'t Shot,
     picture: &'t Picture,
+    effort: Effort,
+    /// Bytes that were thought to be needed.
+    expected: u64,
     load: Duration,
     build: Duration,
     start: Instant,
@@ -61,7 +73,7 @@ struct Take<'t> {
 
 impl Session {
     fn all(self, start: Instant) -> Result<(), Failure> {
-        let scene = source::load(&self.plan.scene)?;
+        let scene = source::load(&self.plan.scene, self.plan.max_memory)?;
         let animation = scene.description.animation;
         // Watched once there is something to clean up; until then a signal ends the program as it always does.
         let mut interrupts = None;
@@ -88,13 +100,26 @@ impl Session {
             &moved
         };
         let load = start.elapsed();
+        let memory = memory::of(&self.plan, scene, shot)?;
+        let effort = memory::effort(&self.plan, &memory, self.plan.threads)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(effort.threads).build();
+        let pool = pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?;
+        let ready = Ready { scene, shot, memory, effort, load, start };
+        pool.install(|| self.picture(ready, interrupts))
+    }
+
+    fn picture(&self, ready: Ready, interrupts: &mut Option<Interrupts>) -> Result<(), Failure> {
+        let Ready { scene, shot, memory, effort, load, start } = ready;
         let built = Instant::now();
         let picture = Picture::new(scene, &self.plan.settings)?;
+        let expected = memory.bytes(&effort);
+        // The threads are there; now that the world stands, larger bands may fit.
+        let Effort { band_pixels, .. } = memory::effort(&self.plan, &memory.of_built(&picture), effort.threads)?;
+        let picture = picture.with_bands(band_pixels);
         self.warn(&picture);
-        let take = Take { shot, picture: &picture, load, build: built.elapsed(), start };
+        let take = Take { shot, picture: &picture, effort, expected, load, build: built.elapsed(), start };
         let mut header = picture.header(self.plan.options());
         header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, shot)));
-        self.check_memory(&picture, &header)?;
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,
             none => none.insert(Interrupts::watch()?),
@@ -113,27 +138,6 @@ impl Session {
         if !self.plan.quiet && !warnings.list().is_empty() {
             console::say(&warnings.render(console::color()));
         }
-    }
-
-    fn check_memory(&self, picture: &Picture, header: &Header) -> Result<(), Failure> {
-        let Plan { threads, output, .. } = &self.plan;
-        let mut parts = vec![("scene and rays".to_owned(), picture.memory_needed(*threads))];
-        if let Product::Picture(Encoding { format, .. }) = self.plan.product {
-            format.check_dimensions(header.width, header.height)?;
-            parts.push((format!("the {format} file"), format.memory_needed(header, output != STANDARD_OUTPUT)));
-        }
-        if self.plan.needs_film() {
-            parts.push(("the film".to_owned(), Film::bytes(&picture.layout())));
-        }
-        let needed = parts.iter().fold(0_u64, |sum, (_, part)| sum.saturating_add(*part));
-        let Some(most) = self.plan.max_memory.filter(|most| needed > *most) else { return Ok(()) };
-        let each: Vec<String> = parts.iter().map(|(name, part)| format!("{} for {name}", bytes(*part))).collect();
-        Err(Failure::Wrong(format!(
-            "the render needs about {} of memory ({}), more than --max-memory {}",
-            bytes(needed),
-            each.join(", "),
-            bytes(most)
-        )))
     }
 
     /// Renders row by row.
@@ -177,8 +181,9 @@ impl Session {
         };
         self.reporter.done(&shot.output, seconds.total, outcome.rays.total(), &outcome.film.hash);
         if let Some(file) = &shot.stats {
-            let json = Stats::new(&self.plan.scene, picture, self.plan.threads, seconds, outcome).to_json();
-            output::write_text(file, &json)?;
+            let mut stats = Stats::new(&self.plan.scene, picture, take.effort.threads, seconds, outcome);
+            stats.expected_memory(take.expected);
+            output::write_text(file, &stats.to_json())?;
         }
         let lost = outcome.rays.not_finite;
         if lost > 0 {

@@ -5,6 +5,7 @@
 //! order, of any number type. Everything else is passed over, with a warning that names it. In a text, each
 //! line is one row of an element, as the header describes it.
 
+mod announced;
 mod ascii;
 mod binary;
 mod body;
@@ -12,6 +13,8 @@ mod header;
 #[cfg(test)]
 mod tests;
 mod vertices;
+
+pub(super) use announced::{Announced, announced};
 
 use super::error::Fault;
 use super::text::Scanner;

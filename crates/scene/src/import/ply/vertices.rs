@@ -47,6 +47,12 @@ fn assign(slots: &mut [Option<usize>], element: &Element, names: &[&str], first:
     true
 }
 
+/// Bytes that a vertex takes in the mesh.
+pub(super) fn bytes_of_vertex(element: &Element) -> u64 {
+    Columns::of(element)
+        .map_or(12, |columns| 12 + if columns.normals { 12 } else { 0 } + if columns.uvs { 8 } else { 0 })
+}
+
 /// Reads all rows. The caller has made sure that the file is long enough for them.
 pub(super) fn read_vertices(
     body: &Body<'_>,

@@ -10,12 +10,17 @@ use juggler_math::Vec3;
 
 const HEADER: usize = 80;
 const FACETS: usize = HEADER + 4;
-const FACET: usize = 50;
+const FACET: usize = super::FACET as usize;
 
 /// Whether the file is exactly as long as its facet count says. No text can be: where the count stands,
 /// letters and digits would promise more than 500 million facets.
 pub(in super::super) fn is_binary(bytes: &[u8]) -> bool {
-    count(bytes).is_some_and(|count| bytes.len() as u64 == FACETS as u64 + count * FACET as u64)
+    announced(bytes) == Some(bytes.len() as u64)
+}
+
+/// Bytes that the file has if it is a binary STL, by its first ones.
+pub(in super::super) fn announced(bytes: &[u8]) -> Option<u64> {
+    count(bytes).map(|count| FACETS as u64 + count * FACET as u64)
 }
 
 fn count(bytes: &[u8]) -> Option<u64> {

@@ -9,13 +9,16 @@ mod binary;
 #[cfg(test)]
 mod tests;
 
-pub(super) use binary::is_binary;
+pub(super) use binary::{announced, is_binary};
 
 use super::assemble::Parts;
 use super::error::Fault;
 use super::weld::{Piece, Welded};
 use super::{Imported, Limits};
 use juggler_math::Vec3;
+
+/// Bytes of a facet in a binary file.
+pub(super) const FACET: u64 = 50;
 
 /// Reads a whole file in pieces of about this many bytes.
 pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {

@@ -1,0 +1,201 @@
+//! `--max-memory`: what is foretold is enough, what fits stays inside, what does not is refused with a reason.
+
+#![allow(clippy::print_stderr, reason = "skipped tests are for the reader")]
+
+use crate::harness::{Folder, Run};
+use serde_json::Value;
+use std::fs;
+use std::process::{Command, Stdio};
+
+const MIB: u64 = 1 << 20;
+
+/// Address space that is reserved and never used, so that `ulimit -v` is to be larger than `--max-memory` by it: the
+/// program and its libraries, and for each thread (those that render and two more) a stack and an arena of glibc.
+fn reserved(threads: u64) -> u64 {
+    64 * MIB + (threads + 2) * (64 + 8) * MIB
+}
+
+/// A bent surface of 2 `edge`² triangles as binary PLY, and a scene of it.
+fn with_mesh(edge: u32) -> Folder {
+    let folder = Folder::new();
+    let side = edge + 1;
+    let head = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        side * side,
+        edge * edge * 2
+    );
+    let mut bytes = head.into_bytes();
+    for i in 0..side * side {
+        let (x, z) = ((i % side) as f32 / edge as f32 - 0.5, (i / side) as f32 / edge as f32 - 0.5);
+        [x * 8.0, x * x + z * x * 3.0, z * 8.0].iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+    }
+    for i in (0..side * edge).filter(|i| i % side < edge) {
+        for corners in [[i, i + side, i + 1], [i + 1, i + side, i + side + 1]] {
+            bytes.push(3);
+            corners.iter().for_each(|corner| bytes.extend(corner.to_le_bytes()));
+        }
+    }
+    fs::write(folder.path("bent.ply"), bytes).unwrap();
+    scene_of(&folder, "bent.ply");
+    folder
+}
+
+fn scene_of(folder: &Folder, mesh: &str) {
+    let text = format!(r#"{{"version": 1, "objects": [{{"shape": {{"mesh": {{"file": "{mesh}"}}}}}}]}}"#);
+    fs::write(folder.path("mesh.json"), text).unwrap();
+}
+
+/// Runs under a limit of address space; `None` where there is no such thing.
+fn limited(folder: &Folder, line: &str, budget: u64, threads: u64) -> Option<Run> {
+    if !cfg!(target_os = "linux") {
+        eprintln!("skipped: no `ulimit -v` here");
+        return None;
+    }
+    let kib = (budget + reserved(threads)) / 1024;
+    let binary = env!("CARGO_BIN_EXE_juggler");
+    let flags = format!("--max-memory {budget} --threads {threads} --quiet --stats stats.json");
+    let shell = format!("ulimit -v {kib}; exec {binary} render {line} {flags}");
+    let mut command = Command::new("sh");
+    command.arg("-c").arg(shell).current_dir(folder.path("")).stdin(Stdio::null());
+    Some(Run::of(command.output().unwrap()))
+}
+
+fn stats(folder: &Folder) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.path("stats.json")).unwrap()).unwrap()
+}
+
+/// Renders under the limit: the peak stays in the budget, and the picture is the one without any.
+fn fits(folder: &Folder, line: &str, budget: u64, threads: u64) {
+    let Some(run) = limited(folder, line, budget, threads) else { return };
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{line}");
+    let stats = stats(folder);
+    let (peak, expected) = peaks(&stats);
+    assert!(peak <= expected && expected <= budget, "{line}: {peak} of {expected} of {budget}");
+}
+
+fn peaks(stats: &Value) -> (u64, u64) {
+    let number = |key: &str| stats["memory"][key].as_u64().unwrap();
+    (number("peak_rss_bytes"), number("expected_bytes"))
+}
+
+#[test]
+fn a_large_picture_fits_into_little_memory() {
+    let folder = Folder::new();
+    fs::write(folder.path("empty.json"), r#"{"version": 1, "background": 0.5, "lights": [{"ambient": {}}]}"#).unwrap();
+    for output in ["a.png", "a.exr"] {
+        fits(&folder, &format!("empty.json --size 20000x400 --samples 1 -o {output}"), 72 * MIB, 2);
+    }
+    // Whatever the bands.
+    let line = "ball.json --size 300x700 --samples 1 -o a.png --threads 2";
+    let free = folder.hash(line);
+    assert_eq!(folder.hash(&format!("{line} --max-memory 19M")), free);
+}
+
+#[test]
+fn a_mesh_fits_where_its_tree_does() {
+    let folder = with_mesh(400);
+    // 320,000 triangles.
+    fits(&folder, "mesh.json --size 64x36 --samples 1 -o a.png", 56 * MIB, 2);
+    let message = folder.bad("render mesh.json --size 64x36 -o a.png --max-memory 32M", 2);
+    assert!(message.contains("mesh `bent.ply`") && message.contains("32.0 MiB"), "{message}");
+    // Before it is read: nobody could know otherwise that this one breaks off.
+    let whole = fs::read(folder.path("bent.ply")).unwrap();
+    fs::write(folder.path("broken.ply"), &whole[..whole.len() - 1]).unwrap();
+    scene_of(&folder, "broken.ply");
+    assert!(folder.bad("render mesh.json -o a.png --max-memory 32M", 2).contains("mesh `broken.ply`"));
+    assert!(folder.bad("render mesh.json -o a.png --max-memory 1G", 2).contains("end of the file"));
+}
+
+#[test]
+fn a_kept_film_fits_or_is_refused_with_advice() {
+    let folder = Folder::new();
+    let line = "ball.json --size 1000x600 --samples 17 -o a.png --checkpoint a.jfilm --checkpoint-every 1";
+    fits(&folder, line, 84 * MIB, 2);
+    let message = folder.bad(&format!("render {line} --max-memory 40M"), 2);
+    for said in ["for the film", "36 bytes a pixel", "--checkpoint", "--shard", "--size"] {
+        assert!(message.contains(said), "{said}: {message}");
+    }
+    // A share of it needs a share of that.
+    fits(&folder, "ball.json --size 1000x600 --samples 17 -o a.jfilm --shard 1/4", 40 * MIB, 2);
+}
+
+#[test]
+fn fewer_threads_and_smaller_bands_are_taken_before_anything_is_refused() {
+    let folder = Folder::new();
+    let line = "ball.json --size 512x2048 --samples 1 -o a.png --threads 16";
+    let free = folder.stats(line);
+    let tight = folder.stats(&format!("{line} --max-memory 28M"));
+    let threads = |stats: &Value| stats["threads"].as_u64().unwrap();
+    assert!(threads(&free) == 16 && (1..8).contains(&threads(&tight)), "{tight}");
+    assert_eq!(tight["film"], free["film"]);
+    assert!(peaks(&tight).0 <= 28 * MIB, "{tight}");
+}
+
+#[test]
+fn what_is_foretold_is_enough() {
+    let folder = with_mesh(200);
+    let scenes = ["ball.json", "mesh.json", "juggler", "chess", "marbles", "blossom", "scalablitz-pool"];
+    for scene in scenes {
+        for threads in [1, 8] {
+            let stats = folder.stats(&format!("{scene} --size 64x48 --samples 2 -o a.png --threads {threads}"));
+            let (peak, expected) = peaks(&stats);
+            assert!(peak <= expected, "{scene}, {threads} threads: {peak} > {expected}");
+        }
+    }
+}
+
+#[test]
+fn meshes_of_all_formats_are_foretold() {
+    let folder = Folder::new();
+    // Long enough that only parts of it are looked at.
+    let edge = 250_u32;
+    let side = edge + 1;
+    let mut text = String::new();
+    let place = |i: u32| [i % side, (i % 7) * (i % 11), i / side].map(|v| v.to_string()).join(" ");
+    (0..side * side).for_each(|i| text += &format!("v {}\n", place(i)));
+    let faces = || (0..side * edge).filter(|i| i % side < edge);
+    faces().for_each(|i| text += &format!("f {} {} {} {}\n", i + 1, i + side + 1, i + side + 2, i + 2));
+    fs::write(folder.path("a.obj"), text).unwrap();
+    let facet = |corners: [u32; 3]| {
+        let corners = corners.map(|i| format!("vertex {}", place(i))).join("\n");
+        format!("facet normal 0 0 0\nouter loop\n{corners}\nendloop\nendfacet\n")
+    };
+    let facets: String =
+        faces().map(|i| facet([i, i + side, i + 1]) + &facet([i + 1, i + side, i + side + 1])).collect();
+    fs::write(folder.path("a.stl"), format!("solid a\n{facets}endsolid a\n")).unwrap();
+    for file in ["a.obj", "a.stl"] {
+        assert!(fs::metadata(folder.path(file)).unwrap().len() > 2 * MIB);
+        scene_of(&folder, file);
+        let stats = folder.stats("mesh.json --size 16x16 --samples 1 -o a.png --threads 2");
+        let (peak, expected) = peaks(&stats);
+        assert!(stats["geometry"]["triangles"] == 2 * edge * edge, "{stats}");
+        assert!(peak <= expected && expected < peak * 2, "{file}: {peak} of {expected}");
+    }
+}
+
+#[test]
+fn a_text_too_large_is_refused_before_it_is_read_as_a_scene() {
+    let folder = Folder::new();
+    let text = format!(r#"{{"version": 1, "objects": [{}]}}"#, "0,".repeat(200_000));
+    fs::write(folder.path("many.json"), text).unwrap();
+    let message = folder.bad("render many.json -o a.png --max-memory 32M", 2);
+    assert!(message.contains("the scene `many.json` needs about"), "{message}");
+}
+
+/// In a control group of its own, where this machine lets us make one.
+#[test]
+fn a_control_group_holds_it() {
+    let folder = with_mesh(300);
+    let command = folder.command("render mesh.json --size 2000x2000 --samples 1 -o a.png --quiet --max-memory 64M");
+    let mut scoped = Command::new("systemd-run");
+    scoped.args(["--scope", "--quiet", "-p", "MemoryMax=64M", "-p", "MemorySwapMax=0"]).arg(command.get_program());
+    scoped.args(command.get_args()).current_dir(folder.path("")).stdin(Stdio::null());
+    let probe = Command::new("systemd-run").args(["--scope", "--quiet", "-p", "MemoryMax=64M", "true"]).output();
+    if !probe.is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: `systemd-run --scope` makes no control group here");
+        return;
+    }
+    let run = Run::of(scoped.output().unwrap());
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+}

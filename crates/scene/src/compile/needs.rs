@@ -1,0 +1,65 @@
+//! What a scene will need memory for, told before its files are read and its world is built.
+
+use super::count::{count, stored};
+use super::meshes::Files;
+use crate::description::{Description, Object};
+use crate::path::Trail;
+use juggler_tracer::material::{AnyMaterial, MaterialRef};
+use juggler_tracer::shape::AnyShape;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// What a scene will need memory for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Bytes of the scene itself: its texts as trees and types.
+    pub text: u64,
+    /// Mesh files that exist, each once.
+    pub files: BTreeSet<PathBuf>,
+    /// Triangles of meshes that stand in the scene itself.
+    pub triangles: u64,
+    /// Objects that are stored, those of groups that are stored once counted once.
+    pub objects: u64,
+    /// Most rays that go on from one point.
+    pub rays: u64,
+    /// Most shadow rays from one point.
+    pub shadows: u64,
+}
+
+impl Needs {
+    /// Of a scene whose files lie there.
+    pub fn of(scene: &Description, files: Files<'_>) -> Self {
+        // Too many objects are refused when they are to be placed.
+        let objects = count(scene).map_or(0, |counts| stored(scene, &counts));
+        let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
+        let text = files.origin.map_or(0, |(sources, _)| sources.bytes_to_read());
+        let mut needs = Self { text, objects, shadows, ..Self::default() };
+        scene.materials.values().for_each(|material| needs.material(material));
+        let groups = Trail::Root.key("groups");
+        scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));
+        needs.add(&scene.objects, files, &Trail::Root.key("objects"));
+        needs
+    }
+
+    fn add(&mut self, objects: &[Object], files: Files<'_>, path: &Trail<'_>) {
+        for (i, object) in objects.iter().enumerate() {
+            let path = path.index(i);
+            if let Some(MaterialRef::Inline(material)) = &object.material {
+                self.material(material);
+            }
+            if let Some(AnyShape::Mesh(mesh)) = &object.shape {
+                self.triangles = self.triangles.saturating_add(mesh.triangles.len() as u64);
+                let path = path.key("shape").key("mesh").join("file");
+                let file = mesh.file.as_ref().map(|file| files.locate(&path, file));
+                self.files.extend(file.and_then(|file| std::fs::canonicalize(file).ok()));
+            }
+            self.add(object.objects.as_deref().unwrap_or_default(), files, &path.key("objects"));
+        }
+    }
+
+    fn material(&mut self, material: &AnyMaterial) {
+        if let AnyMaterial::Phong(phong) = material {
+            self.rays = self.rays.max(u64::from(phong.glossy.rays) + u64::from(phong.blurry.rays));
+        }
+    }
+}
