@@ -1,13 +1,20 @@
 #!/usr/bin/env bash
 # Everything that must hold before a change lands; CI runs exactly this. Cheap checks first.
-#   ./check.sh          all of it
-#   ./check.sh quick    without the release build
+#   ./check.sh            all of it
+#   ./check.sh quick      without the release build
+#   ./check.sh --cluster  instead, the commands of docs/cluster.md on a small Slurm of its own: as root, some minutes, not in CI
 set -euo pipefail
 cd "$(dirname "$0")"
 mode=${1:-all}
-case "$mode" in all | quick) ;; *) echo "usage: ./check.sh [quick]" >&2; exit 2 ;; esac
+case "$mode" in all | quick | --cluster) ;; *) echo "usage: ./check.sh [quick | --cluster]" >&2; exit 2 ;; esac
 
 step() { printf '\n== %s\n' "$*"; }
+
+if [ "$mode" = --cluster ]; then
+  step "tests: the commands of docs/cluster.md"
+  cargo build --release --locked -p juggler-cli
+  exec tests/cluster/test.sh "${CARGO_TARGET_DIR:-target}/release/juggler"
+fi
 
 step "spelling"
 if command -v typos >/dev/null; then typos; else echo "typos is not installed: skipped (pip install typos)"; fi

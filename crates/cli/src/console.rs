@@ -12,9 +12,11 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says something that is no result. Nobody can be told when that fails.
+/// Says something that is no result, in one piece: others may write into the same log. Nobody can be told when that
+/// fails.
 pub fn say(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", text.trim_end_matches('\n'));
+    let line = format!("{}\n", text.trim_end_matches('\n'));
+    let _ = io::stderr().lock().write_all(line.as_bytes());
 }
 
 /// Whether standard error shows colours.

@@ -28,6 +28,18 @@ fn a_checkpoint_changes_nothing_and_is_gone_on_with() {
 }
 
 #[test]
+fn logs_say_what_was_there_already() {
+    let folder = Folder::new();
+    let said = |flags: &str| {
+        let line = format!("render {BALL} --checkpoint kept.jfilm -o part.jfilm {flags}");
+        String::from_utf8(folder.command(&line).output().unwrap().stderr).unwrap()
+    };
+    assert_eq!(said("--samples 70"), "");
+    assert_eq!(said("--samples 100"), "kept.jfilm: 70.0 % is there, going on\n");
+    assert_eq!(said("--samples 100 -q"), "");
+}
+
+#[test]
 fn another_picture_does_not_go_on() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} --samples 16 -q --checkpoint kept.jfilm"));

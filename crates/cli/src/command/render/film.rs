@@ -131,8 +131,17 @@ impl Exposure<'_> {
         }
         if let Some(part) = found.part {
             checkpoint::resume(&part, &self.description, &self.film)?;
+            self.tell_where_it_goes_on(file);
         }
         Ok(kept)
+    }
+
+    /// So that the log of a task that was killed says what was saved.
+    fn tell_where_it_goes_on(&self, file: &str) {
+        if !self.session.plan.quiet {
+            let percent = 100.0 * self.film.samples() as f64 / self.film.goal().max(1) as f64;
+            console::say(&format!("{file}: {percent:.1} % is there, going on"));
+        }
     }
 
     fn expose(&self, control: &Control, interrupts: &Interrupts, kept: Option<&mut Checkpoint>) -> Result<(), Stopped> {
