@@ -19,13 +19,29 @@ pub enum Stop {
     /// Every pixel's relative error is below this.
     Noise {
         /// Relative error.
+        #[serde(with = "exact")]
         level: f64,
     },
     /// So much time was spent.
     Time {
         /// Seconds.
+        #[serde(with = "exact")]
         seconds: f64,
     },
+}
+
+/// Numbers as texts, which come back to the bit; as JSON's numbers they might not.
+mod exact {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(number)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        let number: f64 = String::deserialize(deserializer)?.parse().map_err(D::Error::custom)?;
+        if number.is_finite() { Ok(number) } else { Err(D::Error::custom("no finite number")) }
+    }
 }
 
 /// Which part of the picture this was to become.
@@ -60,6 +76,7 @@ pub struct Description {
     /// Name of the scene.
     pub scene: String,
     /// The frame, which may lie between two.
+    #[serde(with = "exact")]
     pub frame: f64,
     /// Width and height of what the camera sees.
     pub size: [u32; 2],
