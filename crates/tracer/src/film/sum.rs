@@ -18,7 +18,7 @@ pub struct Sum {
     /// The sum of the samples, linear RGB.
     pub total: [f64; 3],
     /// How much the sums of the run's blocks differ: the squared deviations between the two sides of each join, as
-    /// Chan, Golub and LeVeque (1979) add them up, but those of deeper joins count less, by [`DEEPER`] a level. Well
+    /// Chan, Golub and LeVeque (1979) add them up, but those of deeper joins count less, by a quarter a level. Well
     /// spread samples make long runs differ less than short ones; it is the long ones that tell how good the mean is.
     pub spread: [f32; 3],
 }
