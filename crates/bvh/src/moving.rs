@@ -87,8 +87,8 @@ impl MovingBvh {
 
     #[inline(always)]
     pub(crate) fn closest_one<S: Lanes>(&self, simd: S, ray: &mut Ray, leaf: &mut impl Leaf) {
-        let (boxes, mut slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
-        closest_below(simd, boxes, Child::ROOT, &mut Stack::new(), (0, ray), &mut slabs, leaf);
+        let (boxes, slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
+        closest_below(simd, boxes, Child::ROOT, &mut Stack::new(), (0, ray), slabs, leaf);
     }
 
     #[inline(always)]

@@ -199,8 +199,8 @@ impl Bvh {
             #[inline(always)]
             || {
                 for (lane, ray) in rays.iter_mut().enumerate() {
-                    let mut slabs = Slabs::of_ray(simd, ray);
-                    closest_below(simd, &*self.nodes, Child::ROOT, stack, (first + lane, ray), &mut slabs, leaf);
+                    let slabs = Slabs::of_ray(simd, ray);
+                    closest_below(simd, &*self.nodes, Child::ROOT, stack, (first + lane, ray), slabs, leaf);
                 }
             },
         );

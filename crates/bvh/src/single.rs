@@ -44,7 +44,7 @@ impl Bvh {
             }
             for (lane, (ray, slabs)) in rays.iter_mut().zip(&mut ready).enumerate() {
                 let lane = number * AHEAD + lane;
-                closest_below(simd, &*self.nodes, Child::ROOT, &mut stack, (lane, ray), slabs, leaf);
+                closest_below(simd, &*self.nodes, Child::ROOT, &mut stack, (lane, ray), *slabs, leaf);
             }
         }
     }
@@ -93,14 +93,14 @@ pub(crate) fn closest_below<S: Lanes>(
     from: Child,
     stack: &mut Stack,
     (lane, ray): (usize, &mut Ray),
-    slabs: &mut Slabs,
+    mut slabs: Slabs,
     leaf: &mut impl Leaf,
 ) {
     let base = stack.len();
     let mut current = from;
     loop {
         while !current.is_leaf() {
-            let (mask, enter) = boxes.test(simd, current.0 as usize, slabs);
+            let (mask, enter) = boxes.test(simd, current.0 as usize, &slabs);
             let node = boxes.node(current.0 as usize);
             let next = nearest(
                 mask,

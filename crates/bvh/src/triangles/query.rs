@@ -41,7 +41,7 @@ impl<F: Filter> Query<'_, F> {
 
     #[inline(always)]
     fn closest_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> Option<TriangleHit> {
-        let mut slabs = Slabs::of_ray(simd, ray);
+        let slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, *self, ray, &slabs);
         closest_below(
             simd,
@@ -49,7 +49,7 @@ impl<F: Filter> Query<'_, F> {
             Child::ROOT,
             &mut Stack::new(),
             (number, &mut { *ray }),
-            &mut slabs,
+            slabs,
             &mut one,
         );
         one.hit
