@@ -3,8 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test")]
 
+use juggler_golden::rust_files;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Crates whose numbers decide pixels.
 const CRATES: [&str; 6] = ["math", "bvh", "tracer", "scene", "film", "imaging"];
@@ -17,14 +18,6 @@ const PLATFORM: [&str; 22] = [
 
 /// Box tests are padded for the rounding of fused multiplication.
 const FUSED: [&str; 1] = ["bvh/src/node.rs"];
-
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    entries
-        .flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] })
-        .filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
-        .collect()
-}
 
 /// What comes before the tests of a file, without comments.
 fn code(path: &Path) -> String {

@@ -1,7 +1,6 @@
 //! The tree keeps its own rules: short files, and only licences that anybody may use.
 
-#![expect(clippy::unwrap_used, reason = "a test")]
-
+use juggler_golden::rust_files;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -31,14 +30,6 @@ const LICENCES: &[&str] = &[
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    entries
-        .flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] })
-        .filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
-        .collect()
 }
 
 #[test]

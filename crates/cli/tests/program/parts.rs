@@ -135,6 +135,16 @@ fn shards_that_were_killed_are_done_again_and_doubled_ones_are_named() {
 }
 
 #[test]
+fn a_part_may_be_its_own_checkpoint() {
+    let folder = Folder::new();
+    let shard = format!("render {BALL} --samples 40 -q --shard 1/3");
+    folder.good(&format!("{shard} -o apart.jfilm"));
+    folder.good(&format!("{shard} -o one.jfilm --checkpoint one.jfilm"));
+    assert_eq!(fs::read(folder.path("one.jfilm")).unwrap(), fs::read(folder.path("apart.jfilm")).unwrap());
+    assert_eq!(folder.files(), ["apart.jfilm", "one.jfilm"]);
+}
+
+#[test]
 fn clusters_number_their_shards() {
     let folder = Folder::new();
     folder.good(&format!("render {BALL} -q --shard 1/3 -o typed.jfilm"));

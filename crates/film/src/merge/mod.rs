@@ -14,7 +14,7 @@ pub use complaint::{Complaint, MergeError, ToDo};
 
 use crate::part::{Chunk, Description, Part, PartError, PartWriter};
 use juggler_math::Rgb;
-use juggler_tracer::film::{Digest, Layout, Summary, TILE, Tile};
+use juggler_tracer::film::{Digest, Layout, Rect, Summary, TILE, Tile};
 use std::path::Path;
 
 /// Most pixels of a band, if one row of tiles has not more.
@@ -108,17 +108,10 @@ impl Merge {
 
 /// The pixels of tiles side by side, row by row.
 fn row_of_tiles(layout: &Layout, tiles: &[Tile]) -> Vec<Rgb> {
-    let region = layout.region();
-    let width = region.width as usize;
-    let height = tiles.first().map_or(0, |tile| tile.pixels().height as usize);
-    let mut pixels = vec![Rgb::BLACK; width * height];
-    for tile in tiles {
-        let place = tile.pixels();
-        let column = (place.x - region.x) as usize;
-        let means = tile.means();
-        for (row, own) in pixels.chunks_exact_mut(width.max(1)).zip(means.chunks_exact((place.width as usize).max(1))) {
-            row.iter_mut().skip(column).zip(own).for_each(|(pixel, mean)| *pixel = *mean);
-        }
-    }
+    let Some(first) = tiles.first() else { return Vec::new() };
+    let Rect { x, width, .. } = layout.region();
+    let band = Rect { x, width, ..first.pixels() };
+    let mut pixels = vec![Rgb::BLACK; band.area() as usize];
+    tiles.iter().for_each(|tile| tile.copy_to(&band, &mut pixels));
     pixels
 }

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard};
 use crate::progress::{Watch, watched};
-use crate::reproduce::SAMPLES_PER_TILE;
+use crate::reproduce::{self, SAMPLES_PER_TILE};
 use juggler::film::checkpoint::{self, Checkpoint};
 use juggler::film::counts;
 use juggler::film::part::{Description, Part, PartError, Share, write};
@@ -14,7 +14,7 @@ use juggler::film::share::{self, Work};
 use juggler::imaging::{Header, inspect};
 use juggler::tracer::film::{Film, Rect, Summary, TILE};
 use juggler::tracer::render::{Control, Stopped};
-use juggler::{Limit, Origin, Outcome, Picture};
+use juggler::{Limit, Origin, Outcome, Picture, Settings};
 use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -31,9 +31,8 @@ struct Exposure<'t> {
 /// Renders on a film.
 pub fn render(session: &Session, take: &Take, header: Header, interrupts: &Interrupts) -> Result<Outcome, Failure> {
     let (film, share) = wanted(session, take)?;
-    let command = header.metadata.iter().find(|(key, _)| key == "Command").map(|(_, command)| command.clone());
-    let origin =
-        Origin { scene: session.plan.scene.clone(), frame: take.shot.frame, command: command.unwrap_or_default() };
+    let command = reproduce::command(&session.plan, take.shot);
+    let origin = Origin { scene: session.plan.scene.clone(), frame: take.shot.frame, command };
     let description = take.picture.description(&origin, &header, share);
     Exposure { session, take, header, film, description }.run(interrupts)
 }
@@ -64,10 +63,7 @@ fn wanted(session: &Session, take: &Take) -> Result<(Film, Share), Failure> {
 
 /// Parts are cut between tiles only.
 fn check_crop(crop: &Rect, region: &Rect) -> Result<(), Failure> {
-    if crop.intersection(region) != *crop {
-        let (width, height) = (region.width, region.height);
-        return Err(Failure::Wrong(format!("the crop reaches beyond the picture of {width}x{height} pixels")));
-    }
+    Settings { crop: Some(*crop), ..Settings::default() }.region([region.width, region.height])?;
     match share::whole_tiles(region, crop) {
         whole if whole == *crop => Ok(()),
         Rect { x, y, width, height } => Err(Failure::Wrong(format!(
@@ -182,7 +178,10 @@ impl Exposure<'_> {
         let (picture, output) = (self.take.picture, &self.take.shot.output);
         match self.session.plan.product {
             Product::Part => {
-                write(Path::new(output), &self.description, self.film.tiles())?;
+                // What was kept last is the part, when both are one file.
+                if self.take.shot.checkpoint.as_ref() != Some(output) {
+                    write(Path::new(output), &self.description, self.film.tiles())?;
+                }
                 Ok(picture.develop(&self.film, |_| Ok::<(), Failure>(()))?)
             }
             Product::Picture(encoding) => {
