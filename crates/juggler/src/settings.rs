@@ -34,7 +34,8 @@ impl Limit {
     pub fn stop(&self) -> Stop {
         match self {
             Self::Noise(level) => Stop::Noise(*level),
-            Self::Samples | Self::Time { .. } => Stop::Samples,
+            Self::Samples => Stop::Samples,
+            Self::Time { .. } => Stop::Evenly,
         }
     }
 

@@ -18,9 +18,11 @@ const LONGEST_ROUND: u32 = 16 * BLOCK;
 /// When a tile has enough samples. In any case it gets no more than the film wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Stop {
-    /// When it has as many as the film wants.
+    /// When it has as many as the film wants, in long rounds: the rays of many samples of a pixel go similar ways.
     #[default]
     Samples,
+    /// The same in short rounds, so that all tiles grow evenly: for a film that somebody looks at, or ends early.
+    Evenly,
     /// When the root mean square of its pixels' relative errors is at most this level, looked at after fixed
     /// numbers of samples: 64, 96, 128, 192, 256 and so on.
     Noise(f32),
@@ -49,7 +51,7 @@ pub fn is_finished(film: &Film, stop: Stop) -> bool {
 /// The most runs of samples that a tile may hold on its way to the samples `wanted`, each a [`Sum`](crate::film::Sum) a
 /// pixel: after some rounds the sums of a tile are not yet joined into one.
 pub fn most_runs(wanted: &Range<u32>) -> usize {
-    let next = |end: &u32| (*end < wanted.end).then(|| round_after(*end).min(wanted.end));
+    let next = |end: &u32| (*end < wanted.end).then(|| short_round_after(*end).min(wanted.end));
     let ends = std::iter::successors(Some(wanted.start), next).skip(1);
     ends.map(|end| runs(wanted.start..end).len()).max().unwrap_or(0)
 }
@@ -73,6 +75,7 @@ impl Round {
         {
             return None;
         }
+        let round_after = if stop == Stop::Samples { long_round_after } else { short_round_after };
         let end = missing.end.min(round_after(missing.start));
         Some(Self { place, samples: missing.start..end })
     }
@@ -95,8 +98,13 @@ impl Round {
     }
 }
 
-/// The end of the round that begins with this sample: 16, 32, 64, 96, 128, 192, 256 and so on.
-fn round_after(sample: u32) -> u32 {
+/// The end of the long round that begins with this sample: 256, 512, 768 and so on.
+fn long_round_after(sample: u32) -> u32 {
+    (sample / LONGEST_ROUND).saturating_add(1).saturating_mul(LONGEST_ROUND)
+}
+
+/// The end of the short round that begins with this sample: 16, 32, 64, 96, 128, 192, 256, 384, 512, 768 and so on.
+fn short_round_after(sample: u32) -> u32 {
     let power = (sample.checked_ilog2()).map_or(0, |bits| 1 << bits);
     let end = match sample {
         0..BLOCK => BLOCK,
@@ -104,11 +112,11 @@ fn round_after(sample: u32) -> u32 {
         _ if sample < power + power / 2 => power + power / 2,
         _ => power.saturating_mul(2),
     };
-    end.min((sample / LONGEST_ROUND).saturating_add(1).saturating_mul(LONGEST_ROUND))
+    end.min(long_round_after(sample))
 }
 
 fn is_round(sample: u32) -> bool {
-    sample.checked_sub(1).is_some_and(|before| round_after(before) == sample)
+    sample.checked_sub(1).is_some_and(|before| short_round_after(before) == sample)
 }
 
 /// The rounds that wait: those of the tiles with the fewest samples come first.
@@ -147,7 +155,7 @@ impl<'f> Rounds<'f> {
             if let Some(Reverse((start, place, end))) = state.waiting.pop() {
                 state.begun += 1;
                 // The rounds of a tile follow from each other's samples only where noise is looked at.
-                if self.stop == Stop::Samples
+                if !matches!(self.stop, Stop::Noise(_))
                     && let Some(next) = Round::after(self.film, self.stop, place, end)
                 {
                     state.waiting.push(next.entry());
@@ -163,7 +171,7 @@ impl<'f> Rounds<'f> {
 
     fn done(&self, round: &Round) {
         let next = match self.stop {
-            Stop::Samples => None,
+            Stop::Samples | Stop::Evenly => None,
             Stop::Noise(_) => Round::after(self.film, self.stop, round.place, 0),
         };
         let mut state = self.lock();
@@ -217,12 +225,13 @@ mod tests {
     fn rounds_are_whole_blocks_and_grow_by_half_at_most() {
         let mut ends = vec![0];
         while *ends.last().unwrap() < 3000 {
-            ends.push(round_after(*ends.last().unwrap()));
+            ends.push(short_round_after(*ends.last().unwrap()));
         }
         assert_eq!(ends[..12], [0, 16, 32, 64, 96, 128, 192, 256, 384, 512, 768, 1024]);
         assert!(ends.windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_ROUND && pair[1] % BLOCK == 0));
         assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
-        assert_eq!(round_after(70), 96, "within a round, to its end");
+        assert_eq!(short_round_after(70), 96, "within a round, to its end");
+        assert_eq!([0, 70, 255, 256].map(long_round_after), [256, 256, 256, 512]);
     }
 
     #[test]
@@ -254,7 +263,7 @@ mod tests {
             let begun = exposed(job, whole(0..21), Stop::Samples);
             let film = whole(0..70);
             begun.tiles().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
-            let some = exposed(job, Film::of(film.layout(), [(1, 32..64), (4, 48..70)]), Stop::Samples);
+            let some = exposed(job, Film::of(film.layout(), [(1, 32..64), (4, 48..70)]), Stop::Evenly);
             some.tiles().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
             assert!(!is_finished(&film, Stop::Samples));
             assert_eq!(means(&exposed(job, film, Stop::Samples)), means(&straight));
@@ -299,7 +308,7 @@ mod tests {
                     }
                     control.finish();
                 });
-                expose(job, &film, Stop::Samples, &control).unwrap();
+                expose(job, &film, Stop::Evenly, &control).unwrap();
             });
             film
         });
