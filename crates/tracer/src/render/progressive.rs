@@ -24,7 +24,7 @@ pub enum Stop {
     /// The same in short rounds, so that all tiles grow evenly: for a film that somebody looks at, or ends early.
     Evenly,
     /// When the root mean square of its pixels' relative errors is at most this level, looked at after fixed
-    /// numbers of samples: 64, 96, 128, 192, 256 and so on.
+    /// numbers of samples: 64, 80, 96, 112, 128, 160, 192, 224, 256 and so on.
     Noise(f32),
 }
 
@@ -103,16 +103,17 @@ fn long_round_after(sample: u32) -> u32 {
     (sample / LONGEST_ROUND).saturating_add(1).saturating_mul(LONGEST_ROUND)
 }
 
-/// The end of the short round that begins with this sample: 16, 32, 64, 96, 128, 192, 256, 384, 512, 768 and so on.
+/// The end of the short round that begins with this sample: 16, 32, 64, 80, 96, 112, 128, 160, 192, 224, 256 and so on.
 fn short_round_after(sample: u32) -> u32 {
     let power = (sample.checked_ilog2()).map_or(0, |bits| 1 << bits);
-    let end = match sample {
-        0..BLOCK => BLOCK,
-        _ if sample < LEAST_FOR_NOISE => power * 2,
-        _ if sample < power + power / 2 => power + power / 2,
-        _ => power.saturating_mul(2),
-    };
-    end.min(long_round_after(sample))
+    if sample < BLOCK {
+        return BLOCK;
+    }
+    if sample < LEAST_FOR_NOISE {
+        return power * 2;
+    }
+    let length = (power / 4).min(LONGEST_ROUND);
+    (sample / length).saturating_add(1).saturating_mul(length)
 }
 
 fn is_round(sample: u32) -> bool {
@@ -222,21 +223,22 @@ mod tests {
     }
 
     #[test]
-    fn rounds_are_whole_blocks_and_grow_by_half_at_most() {
+    fn rounds_are_whole_blocks_and_grow_by_a_quarter() {
         let mut ends = vec![0];
         while *ends.last().unwrap() < 3000 {
             ends.push(short_round_after(*ends.last().unwrap()));
         }
-        assert_eq!(ends[..12], [0, 16, 32, 64, 96, 128, 192, 256, 384, 512, 768, 1024]);
+        assert_eq!(ends[..14], [0, 16, 32, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320, 384]);
+        assert!(ends[3..].windows(2).all(|pair| pair[1] <= pair[0] + pair[0] / 4));
         assert!(ends.windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_ROUND && pair[1] % BLOCK == 0));
         assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
-        assert_eq!(short_round_after(70), 96, "within a round, to its end");
+        assert_eq!(short_round_after(70), 80, "within a round, to its end");
         assert_eq!([0, 70, 255, 256].map(long_round_after), [256, 256, 256, 512]);
     }
 
     #[test]
     fn runs_that_wait_to_be_joined_are_counted() {
-        let known = [(0, 0), (1, 1), (16, 1), (17, 2), (64, 1), (96, 2), (192, 2), (256, 2), (1024, 2), (1 << 16, 8)];
+        let known = [(0, 0), (1, 1), (16, 1), (17, 2), (64, 1), (96, 2), (192, 3), (256, 3), (1024, 3), (1 << 16, 8)];
         for (samples, runs) in known {
             assert_eq!(most_runs(&(0..samples)), runs, "{samples}");
         }
