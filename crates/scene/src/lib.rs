@@ -21,6 +21,7 @@ mod presets;
 pub mod report;
 mod scene;
 pub mod schema;
+mod store;
 pub mod suggest;
 pub mod validate;
 
@@ -31,3 +32,4 @@ pub use presets::{BuiltIn, built_in_scenes};
 pub use report::{Problem, Problems, Severity};
 pub use scene::{Scene, SceneError};
 pub use schema::{reference, schema_json};
+pub use store::{Bundle, Store};

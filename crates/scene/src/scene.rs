@@ -2,9 +2,10 @@
 
 use crate::compile::{Assembly, Compiled, Files, Library, Needs};
 use crate::description::{Animation, Backdrop, Description, Object};
-use crate::document::{Document, Node, Sources, Unreadable, read_text};
+use crate::document::{Document, Node, Sources, Unreadable};
 use crate::fingerprint::Fingerprint;
 use crate::report::{Finding, Problems, plain_io};
+use crate::store::{Bundle, Store};
 use crate::validate::validate;
 use crate::{animate, schema};
 use juggler_tracer::camera::AnyCamera;
@@ -84,20 +85,32 @@ impl Scene {
 
     /// Reads a scene file and what it includes, at frame 0.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
-        let text = read_text(path).map_err(|unreadable| match unreadable {
+        Self::read(path.as_ref(), Store::Disk)
+    }
+
+    /// Reads a scene from files in memory, as [`Scene::load`] does from those of the disk.
+    pub fn from_bundle(bundle: Bundle, name: &str) -> Result<Self, SceneError> {
+        Self::read(Path::new(name), Store::Memory(bundle))
+    }
+
+    fn read(path: &Path, store: Store) -> Result<Self, SceneError> {
+        let text = store.text(path).map_err(|unreadable| match unreadable {
             Unreadable::Io(source) => SceneError::Read { path: path.into(), source },
             Unreadable::NotText(message) => SceneError::NotText { path: path.into(), message },
         })?;
-        Self::from_json(text, &path.to_string_lossy())
+        Self::parse(text, &path.to_string_lossy(), store)
     }
 
     /// Reads a scene from a text. `name` is what messages call it; files that the scene names are looked for in
     /// the folder of `name`.
     pub fn from_json(text: impl Into<String>, name: &str) -> Result<Self, SceneError> {
-        let (document, findings) = Document::read(name, text.into())
+        Self::parse(text.into(), name, Store::Disk)
+    }
+
+    fn parse(text: String, name: &str, store: Store) -> Result<Self, SceneError> {
+        let (document, findings) = Document::read(name, text, &store)
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, None)))?;
-        Self::resolve(Arc::new(document), findings, 0.0, Library::default())
+        Self::resolve(Arc::new(document), findings, 0.0, Library::new(store))
     }
 
     /// The same scene at another frame, which may lie between two. A scene that was not read from a file has no

@@ -1,9 +1,10 @@
 //! Mesh files: each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
 
 use crate::document::{Node, Sources};
-use crate::import::{Fault, ImportError, Limits, parse, read};
+use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
+use crate::store::Store;
 use juggler_tracer::shape::{Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// The meshes that were loaded so far.
 #[derive(Clone, Debug, Default)]
 pub struct Library {
+    store: Store,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
 }
 
@@ -25,6 +27,11 @@ struct Entry {
 }
 
 impl Library {
+    /// Of files that come from there.
+    pub fn new(store: Store) -> Self {
+        Self { store, ..Self::default() }
+    }
+
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
     pub fn digest(&self, path: &std::path::Path) -> [u8; 32] {
         self.get(path).digest
@@ -37,9 +44,9 @@ impl Library {
             return Arc::clone(known);
         }
         // The same file by another name.
-        let file = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let file = self.store.true_name(path);
         let known = self.entries().get(&file).filter(|entry| entry.mesh.is_ok()).map(Arc::clone);
-        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path)));
+        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path, &self.store)));
         let mut entries = self.entries();
         let first = Arc::clone(entries.entry(file).or_insert(entry));
         Arc::clone(entries.entry(path.to_path_buf()).or_insert(first))
@@ -51,9 +58,9 @@ impl Library {
 }
 
 impl Entry {
-    fn load(path: &std::path::Path) -> Self {
+    fn load(path: &std::path::Path, store: &Store) -> Self {
         let limits = Limits::default();
-        let bytes = match read(path, &limits) {
+        let bytes = match store.mesh(path, &limits) {
             Ok(bytes) => bytes,
             Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)) },
         };
