@@ -195,7 +195,7 @@ impl Worker {
             });
             loop {
                 shared.rest(Some(interval), |desk| desk.done || desk.calls());
-                let (done, called) = (shared.desk().done, shared.desk().calls());
+                let (done, called) = shared.desk().state();
                 if called {
                     control.cancel();
                 }

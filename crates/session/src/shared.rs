@@ -81,6 +81,11 @@ impl Shown {
 }
 
 impl Desk {
+    /// Whether what was being rendered is done, and whether the worker has anything to turn to.
+    pub fn state(&self) -> (bool, bool) {
+        (self.done, self.calls())
+    }
+
     /// Whether the worker has anything to turn to.
     pub fn calls(&self) -> bool {
         self.closed || !self.edits.is_empty() || self.built.is_some()

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// What a change may take to be shown; measured without other load it is 40 ms.
 const AT_ONCE: Duration = Duration::from_millis(200);
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(30);
 
 fn watched(file: &Path) -> Session {
     let options = Options { size: Some([32, 24]), threads: 2, watch: true, ..Options::default() };
