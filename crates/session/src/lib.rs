@@ -39,3 +39,7 @@ pub use probe::Probe;
 pub use session::{Options, SaveError, Session};
 pub use status::{Stage, Status};
 pub use subject::{Build, Change, MOST_PIXELS, Mistake, Subject, text_of};
+
+#[cfg(all(doctest, feature = "native"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

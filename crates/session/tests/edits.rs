@@ -122,6 +122,8 @@ fn only_what_decides_samples_begins_anew() {
 #[test]
 fn every_channel_shows_something_else() {
     let session = opened("juggler");
+    // Of fewer nothing is known of the noise.
+    after(&session, Edit::Setting(Setting::Samples(64)));
     let mut seen = Vec::new();
     for channel in Channel::ALL {
         let status = after(&session, Edit::Show(channel));
@@ -224,10 +226,7 @@ fn cameras_move_focus_and_are_chosen() {
     let back = after(&session, Edit::Camera(cameras[0].clone()));
     assert_eq!(back.camera, first);
     let look = json!({"orthographic": {"eye": [0, 0, 900], "height": 300}});
-    assert_eq!(
-        after(&session, Edit::Look(look.clone())).camera,
-        json!({"orthographic": {"eye": [0.0, 0.0, 900.0], "height": 300.0}})
-    );
+    assert_eq!(after(&session, Edit::Look(look.clone())).camera, look);
     assert!(after(&session, Edit::Look(json!({"perspective": {"vertical_fov_degrees": 400}}))).error.is_some());
     assert!(after(&session, Edit::Look(json!(3))).error.is_some());
 }
@@ -348,6 +347,10 @@ fn news_are_told_and_the_threads_end_with_the_last_handle() {
     let seen = session.frame().unwrap().number;
     session.edit(Edit::Zoom(1.5));
     assert!(session.wait(seen, u64::MAX, PATIENCE), "a frame comes");
+    let end = Instant::now() + PATIENCE;
+    while told.load(Relaxed) == 0 && Instant::now() < end {
+        std::thread::sleep(Duration::from_millis(5));
+    }
     assert!(told.load(Relaxed) > 0);
     let other = session.clone();
     drop(session);
