@@ -11,6 +11,7 @@
 //! watched: what stands here for who brings their own, as the page that renders in the browser alone, is [`Subject`] with
 //! what makes pictures of it: [`draw`], [`screen`], [`Pace`].
 
+mod build;
 mod coarse;
 pub mod draw;
 mod edit;
@@ -31,6 +32,7 @@ mod watch;
 #[cfg(feature = "native")]
 mod worker;
 
+pub use build::{Build, MOST_PIXELS, Mistake, text_of};
 pub use coarse::{Pace, coarse_size};
 pub use edit::{Channel, Edit, Fly, Orbit, Setting};
 pub use frame::Frame;
@@ -38,7 +40,7 @@ pub use probe::Probe;
 #[cfg(feature = "native")]
 pub use session::{Options, SaveError, Session};
 pub use status::{Stage, Status};
-pub use subject::{Build, Change, MOST_PIXELS, Mistake, Subject, text_of};
+pub use subject::{Change, Subject};
 
 #[cfg(all(doctest, feature = "native"))]
 #[doc = include_str!("../README.md")]

@@ -7,7 +7,7 @@ use crate::subject::Subject;
 use crate::worker::Worker;
 use crate::{Channel, Frame, Stage};
 use juggler::Picture;
-use juggler::tracer::film::{Film, Layout};
+use juggler::tracer::film::{Film, Layout, Rect};
 use juggler::tracer::render::{self, Control, Stop, Stopped};
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -123,6 +123,16 @@ impl Worker {
             debug_assert_eq!(added, Ok(true), "of the same layout, and new");
         }
         self.film = Some(Arc::new(film));
+    }
+
+    /// Only this part gets better from now on.
+    pub fn confine(&mut self, region: Option<Rect>) {
+        let [width, height] = self.status.size;
+        let whole = Rect { x: 0, y: 0, width, height };
+        let inside = region.map(|region| region.intersection(&whole));
+        self.region = inside.filter(|region| region.area() > 0 && *region != whole);
+        self.describe();
+        self.refilm();
     }
 
     /// The same samples shown otherwise.

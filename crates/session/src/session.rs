@@ -1,7 +1,7 @@
 //! The handle that windows, pages and scripts hold.
 
+use crate::build::Build;
 use crate::shared::Shared;
-use crate::subject::Build;
 use crate::worker::{self, Worker};
 use crate::{Edit, Frame, Probe, Status};
 use juggler::imaging::{self, Destination, Format, Options as FileOptions, RowWriter};

@@ -1,7 +1,8 @@
 //! What a session's handles and its worker share.
 
+use crate::build::Mistake;
 use crate::screen::Draft;
-use crate::subject::{Mistake, Subject};
+use crate::subject::Subject;
 use crate::{Edit, Frame, Status};
 use juggler::Picture;
 use juggler::math::Rgb;

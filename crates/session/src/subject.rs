@@ -1,21 +1,19 @@
 //! What is looked at: a scene, what people changed of it, and the picture that follows. No threads, no clocks: all that
 //! takes long is in [`Build::run`], which whoever holds the subject runs where it likes.
 
+use crate::build::{Build, MOST_PIXELS, Task, text_of};
 use crate::{Edit, Setting, Status, pose};
 use juggler::math::{Aabb, Ray, Vec2, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::kind::name_of;
-use juggler::scene::{Scene, SceneError, camera_json, with_camera};
+use juggler::scene::{Scene, camera_json, with_camera};
 use juggler::tracer::camera::AnyCamera;
 use juggler::tracer::integrator::AnyIntegrator;
 use juggler::tracer::world::Vertex;
-use juggler::{Error, Picture, Settings, View};
+use juggler::{Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Most pixels of a picture that is looked at: their samples are all held in memory.
-pub const MOST_PIXELS: u64 = 1 << 25;
 
 /// What is looked at.
 #[derive(Clone)]
@@ -23,24 +21,24 @@ pub struct Subject {
     /// The name that it was opened by.
     pub name: String,
     /// As its file has it, at frame 0.
-    file: Arc<Scene>,
+    pub(crate) file: Arc<Scene>,
     /// With the values that were set, at the frame.
-    scene: Arc<Scene>,
+    pub(crate) scene: Arc<Scene>,
     /// Values that were set, by place, in their order.
-    values: Vec<(String, Value)>,
-    frame: f64,
-    settings: Settings,
+    pub(crate) values: Vec<(String, Value)>,
+    pub(crate) frame: f64,
+    pub(crate) settings: Settings,
     /// The size that a reset leads back to; the scene's without.
-    size: Option<[u32; 2]>,
+    pub(crate) size: Option<[u32; 2]>,
     /// The camera where people moved it.
-    camera: Option<AnyCamera>,
+    pub(crate) camera: Option<AnyCamera>,
     /// Cameras that were kept in memory, by name.
-    kept: Vec<(String, AnyCamera)>,
-    upward: Vec3,
-    interest: Vec3,
+    pub(crate) kept: Vec<(String, AnyCamera)>,
+    pub(crate) upward: Vec3,
+    pub(crate) interest: Vec3,
     /// Whether the point of interest was chosen, and does not follow the picture's middle.
-    held: bool,
-    picture: Arc<Picture>,
+    pub(crate) held: bool,
+    pub(crate) picture: Arc<Picture>,
 }
 
 /// What an edit asks for.
@@ -50,149 +48,11 @@ pub enum Change {
     /// The picture is another one already: [`Subject::picture`].
     View,
     /// A world must be built first.
-    Build(Build),
+    Build(Box<Build>),
 }
 
-/// A world to be built.
-pub struct Build {
-    task: Task,
-    name: String,
-    values: Vec<(String, Value)>,
-    frame: f64,
-    settings: Settings,
-    size: Option<[u32; 2]>,
-    /// The camera where people moved it.
-    camera: Option<AnyCamera>,
-    /// Cameras that were kept in memory.
-    kept: Vec<(String, AnyCamera)>,
-    /// The subject as it was, whose world may be that of the new one.
-    before: Option<(Arc<Scene>, Arc<Picture>)>,
-}
-
-#[derive(Clone)]
-enum Task {
-    /// Another scene, by its name.
-    Open,
-    /// The same file again; the scene holds meshes that need not be read again.
-    Reload(Arc<Scene>),
-    /// A scene that is here.
-    Have(Arc<Scene>),
-}
-
-/// Why there is no world.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mistake {
-    /// As `juggler check` says it, without colours.
-    pub text: String,
-    /// The files that were read before it was found, as far as they are known.
-    pub files: Vec<PathBuf>,
-}
-
-impl Build {
-    /// A scene file, or a built-in scene by name.
-    pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
-        let settings = Settings { size, ..Settings::default() };
-        let (values, kept) = (Vec::new(), Vec::new());
-        let (task, name) = (Task::Open, name.to_owned());
-        Self { task, name, values, frame: 0.0, settings, size, camera: None, kept, before: None }
-    }
-
-    /// A scene that a program made.
-    pub fn of(scene: Scene, name: &str, size: Option<[u32; 2]>) -> Self {
-        Self { task: Task::Have(Arc::new(scene)), ..Self::open(name, size) }
-    }
-
-    /// Reads and builds: takes its time, on the threads of the current rayon pool.
-    pub fn run(self) -> Result<Subject, Mistake> {
-        let name = PathBuf::from(&self.name);
-        self.build().map_err(|error| {
-            let mut files = vec![name];
-            if let Error::Scene(SceneError::Problems(problems)) = &error {
-                files.extend(problems.sources().names().map(PathBuf::from));
-            }
-            Mistake { text: text_of(&error), files }
-        })
-    }
-
-    fn build(mut self) -> Result<Subject, Error> {
-        let file = match self.task.clone() {
-            Task::Open => Arc::new(Scene::named(&self.name)?),
-            Task::Reload(scene) => self.reload(&scene)?,
-            Task::Have(scene) => scene,
-        };
-        let mut scene = Arc::clone(&file);
-        for (path, value) in &self.values {
-            scene = Arc::new(scene.with_value(path, value.clone())?);
-        }
-        if self.frame != 0.0 {
-            scene = Arc::new(scene.at_frame(self.frame)?);
-        }
-        let size = self.settings.size_of(&scene);
-        if bearable(size) != size {
-            self.settings.size = Some(bearable(size));
-        }
-        let mut picture = self.picture(&scene)?;
-        let upward = picture.view().camera.upward();
-        if let Some(camera) = &self.camera {
-            picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
-        }
-        let Self { name, values, frame, settings, size, camera, kept, .. } = self;
-        let (picture, interest, held) = (Arc::new(picture), Vec3::ZERO, false);
-        let mut subject =
-            Subject { name, file, scene, values, frame, settings, size, camera, kept, upward, interest, held, picture };
-        subject.look_for_interest();
-        Ok(subject)
-    }
-
-    fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
-        match &self.before {
-            Some((before, picture)) if scene.has_world_of(before) => picture.again(scene, &self.settings),
-            _ => Picture::new(scene, &self.settings),
-        }
-    }
-
-    /// The file again. What people changed stays, unless the file has changed there too.
-    fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
-        let is_file = Path::new(&self.name).is_file();
-        let new = Arc::new(if is_file { old.reload(&self.name)? } else { Scene::named(&self.name)? });
-        if !self.values.is_empty() {
-            let [before, after] = [old, &new].map(|scene| scene.to_value());
-            self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));
-        }
-        let chosen = |settings: &Settings, scene: &Scene| chosen_camera(settings, scene).cloned();
-        if chosen(&self.settings, old) != chosen(&self.settings, &new) {
-            (self.camera, self.settings.camera) = (None, None);
-        }
-        Ok(new)
-    }
-}
-
-/// The camera that is looked through first, when the scene says.
-fn chosen_camera<'s>(settings: &Settings, scene: &'s Scene) -> Option<&'s AnyCamera> {
-    let description = &scene.description;
-    let named = settings.camera.as_ref().or(description.render.camera.as_ref().map(|name| &name.0));
-    let several = &description.cameras;
-    let named = named.map(|name| several.get(name).or(description.camera.as_ref().filter(|_| name == "camera")));
-    named.unwrap_or_else(|| description.camera.as_ref().or_else(|| several.values().next()))
-}
-
-/// A size whose film can be held in memory, of the same shape.
-fn bearable([width, height]: [u32; 2]) -> [u32; 2] {
-    let pixels = u64::from(width) * u64::from(height);
-    let scale = (MOST_PIXELS as f64 / pixels.max(1) as f64).sqrt();
-    if pixels <= MOST_PIXELS {
-        [width, height]
-    } else {
-        [width, height].map(|edge| ((f64::from(edge) * scale) as u32).max(1))
-    }
-}
-
-/// As `juggler check` says it.
-pub fn text_of(error: &Error) -> String {
-    match error {
-        Error::Scene(SceneError::Problems(problems)) => problems.render(false),
-        error => format!("error: {error}"),
-    }
+fn rebuild(build: Build) -> Change {
+    Change::Build(Box::new(build))
 }
 
 impl Subject {
@@ -245,25 +105,25 @@ impl Subject {
     /// that are not about the picture are ignored.
     pub fn apply(&mut self, edit: &Edit) -> Result<Change, String> {
         match edit {
-            Edit::Scene(name) => Ok(Change::Build(Build { size: self.size, ..Build::open(name, self.settings.size) })),
-            Edit::Reload => Ok(Change::Build(self.build(Task::Reload(Arc::clone(&self.file))))),
+            Edit::Scene(name) => Ok(rebuild(Build { size: self.size, ..Build::open(name, self.settings.size) })),
+            Edit::Reload => Ok(rebuild(self.build(Task::Reload(Arc::clone(&self.file))))),
             Edit::Reset => {
                 let settings = Settings { size: self.size, ..Settings::default() };
                 let build = self.build(Task::Have(Arc::clone(&self.file)));
-                Ok(Change::Build(Build { values: Vec::new(), frame: 0.0, settings, camera: None, ..build }))
+                Ok(rebuild(Build { values: Vec::new(), frame: 0.0, settings, camera: None, ..build }))
             }
             Edit::Set { path, value } => {
                 let mut build = self.build(Task::Have(Arc::clone(&self.file)));
                 build.values.retain(|(other, _)| other != path);
                 build.values.push((path.clone(), value.clone()));
-                Ok(Change::Build(build))
+                Ok(rebuild(build))
             }
             Edit::At(frame) => {
                 let frame = self.animation().map_or(0.0, |animation| frame.clamp(0.0, f64::from(animation.frames)));
                 if frame == self.frame || !frame.is_finite() {
                     return Ok(Change::Nothing);
                 }
-                Ok(Change::Build(Build { frame, ..self.build(Task::Have(Arc::clone(&self.file))) }))
+                Ok(rebuild(Build { frame, ..self.build(Task::Have(Arc::clone(&self.file))) }))
             }
             Edit::Setting(setting) => self.set(setting),
             Edit::Fly(_) | Edit::Orbit(_) | Edit::Zoom(_) | Edit::Focus(_) | Edit::Frame(_) => self.steer(edit),
@@ -458,7 +318,7 @@ impl Subject {
     }
 
     /// What is seen in the picture's middle, or as far ahead as the middle of everything.
-    fn look_for_interest(&mut self) {
+    pub(crate) fn look_for_interest(&mut self) {
         let middle = self.picture.size().map(|edge| edge as f32 * 0.5);
         if let Some((point, _)) = self.seen_at(middle) {
             self.interest = point;

@@ -1,10 +1,11 @@
 //! The thread that turns edits into pictures: what is to be done, and when. How it is done: `rendering.rs`.
 
+use crate::build::{Build, Mistake};
 use crate::coarse::Pace;
 use crate::screen::{Canvas, Draft, Toner};
 use crate::session::Options;
 use crate::shared::{Shared, Shown};
-use crate::subject::{Build, Change, Mistake, Subject};
+use crate::subject::{Change, Subject};
 use crate::watch::Watch;
 use crate::{Edit, Frame, Setting, Stage, Status};
 use juggler::Picture;
@@ -62,10 +63,18 @@ pub struct Worker {
 struct Building {
     number: u64,
     began: Instant,
-    /// Whether the files are read.
-    of_files: bool,
-    /// Whether it is another scene.
-    is_other: bool,
+    why: Why,
+}
+
+/// Why a world is built.
+#[derive(Clone, Copy, PartialEq)]
+enum Why {
+    /// Another scene is asked for.
+    Other,
+    /// The files may have changed.
+    Files,
+    /// Something of the scene is another, or the frame.
+    Parts,
 }
 
 /// Threads that render; all cores when 0.
@@ -112,7 +121,7 @@ impl Worker {
 
     /// Works until the session is closed.
     pub fn run(mut self, build: Build) {
-        self.build(build, true, true);
+        self.build(build, Why::Other);
         while !self.shared.desk().closed {
             self.take_built();
             self.take_edits();
@@ -136,7 +145,7 @@ impl Worker {
         let building = self.building.is_some();
         self.shared.rest(timeout, |desk| {
             // While a world is built, only another scene is of interest.
-            let edits = if building { desk.edits.iter().any(supersedes) } else { !desk.edits.is_empty() };
+            let edits = if building { desk.edits.iter().any(Edit::supersedes) } else { !desk.edits.is_empty() };
             desk.closed || desk.built.is_some() || edits
         });
     }
@@ -151,11 +160,11 @@ impl Worker {
         self.shared.publish(frame, self.status.clone(), shown);
     }
 
-    fn build(&mut self, build: Build, of_files: bool, is_other: bool) {
+    fn build(&mut self, build: Build, why: Why) {
         self.builds += 1;
         let (number, shared) = (self.builds, Arc::clone(&self.shared));
-        self.building = Some(Building { number, began: Instant::now(), of_files, is_other });
-        if is_other {
+        self.building = Some(Building { number, began: Instant::now(), why });
+        if why == Why::Other {
             self.status.stage = Stage::Loading;
             self.publish(None);
         }
@@ -191,11 +200,11 @@ impl Worker {
 
     fn take_subject(&mut self, subject: Subject, building: Building) {
         self.status.error = None;
-        if building.of_files {
+        if building.why != Why::Parts {
             self.broken = None;
             self.watch(&subject.files());
         }
-        if building.is_other {
+        if building.why == Why::Other {
             (self.region, self.playing) = (None, None);
             self.pace.forget();
         }
@@ -209,7 +218,7 @@ impl Worker {
     }
 
     fn take_mistake(&mut self, mistake: Mistake, building: Building) {
-        if building.of_files {
+        if building.why != Why::Parts {
             self.broken = Some(mistake.text.clone());
             let mut files = self.subject.as_ref().map_or_else(Vec::new, |subject| subject.files());
             files.extend(mistake.files);
@@ -243,14 +252,14 @@ impl Worker {
         let mut desk = self.shared.desk();
         if self.building.is_some() {
             // What came before it is about a scene that nobody wants to see any more.
-            let at = desk.edits.iter().position(supersedes)?;
+            let at = desk.edits.iter().position(Edit::supersedes)?;
             desk.edits.drain(..at);
             self.status.revision += at as u64;
         }
         loop {
             let edit = desk.edits.pop_front()?;
             self.status.revision += 1;
-            if !desk.edits.front().is_some_and(|next| replaces(next, &edit)) {
+            if !desk.edits.front().is_some_and(|next| next.replaces(&edit)) {
                 return Some(edit);
             }
         }
@@ -294,7 +303,7 @@ impl Worker {
         if self.subject.is_some() {
             return self.apply_to_subject(&Edit::Scene(self.wanted.clone()));
         }
-        self.build(Build::open(&self.wanted, self.options.size), true, true);
+        self.build(Build::open(&self.wanted, self.options.size), Why::Other);
         Ok(())
     }
 
@@ -304,8 +313,12 @@ impl Worker {
         match Arc::make_mut(subject).apply(edit)? {
             Change::Nothing => self.describe(),
             Change::Build(build) => {
-                let is_other = matches!(edit, Edit::Scene(_));
-                self.build(build, is_other || *edit == Edit::Reload, is_other);
+                let why = match edit {
+                    Edit::Scene(_) => Why::Other,
+                    Edit::Reload => Why::Files,
+                    _ => Why::Parts,
+                };
+                self.build(*build, why);
             }
             Change::View => {
                 self.status.error.clone_from(&self.broken);
@@ -359,15 +372,6 @@ impl Worker {
         }
     }
 
-    fn confine(&mut self, region: Option<Rect>) {
-        let [width, height] = self.status.size;
-        let whole = Rect { x: 0, y: 0, width, height };
-        let inside = region.map(|region| region.intersection(&whole));
-        self.region = inside.filter(|region| region.area() > 0 && *region != whole);
-        self.describe();
-        self.refilm();
-    }
-
     /// Brings the status up to date.
     pub fn describe(&mut self) {
         let status = &mut self.status;
@@ -377,20 +381,6 @@ impl Worker {
         if let Some(subject) = &self.subject {
             subject.describe(status);
         }
-    }
-}
-
-/// Whether nothing that comes before it matters any more.
-fn supersedes(edit: &Edit) -> bool {
-    matches!(edit, Edit::Scene(_))
-}
-
-/// Whether of two edits in a row the first leaves no trace.
-fn replaces(next: &Edit, edit: &Edit) -> bool {
-    match (next, edit) {
-        (Edit::At(_), Edit::At(_)) | (Edit::Reload, Edit::Reload) | (Edit::Scene(_), _) => true,
-        (Edit::Set { path: a, .. }, Edit::Set { path: b, .. }) => a == b,
-        _ => false,
     }
 }
 

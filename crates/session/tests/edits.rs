@@ -1,4 +1,5 @@
 //! Every kind of edit: what it does, and what it says when it cannot be.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use juggler::scene::{Scene, built_in_scenes};
 use juggler::tracer::film::Rect;

@@ -1,4 +1,5 @@
 //! Files that change while they are looked at.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use juggler::scene::Scene;
 use juggler_session::{Edit, Fly, Options, Session, Stage, Status};

@@ -1,4 +1,5 @@
 //! What a session shows in the end is what `juggler render` writes.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use juggler::scene::Scene;
 use juggler::tracer::render::{Control, Scheduler};

@@ -23,7 +23,7 @@ impl Part {
     pub fn of(scene: &Description, number: u32) -> Option<Self> {
         let counts = count::count(scene).ok()?;
         let search = Search { scene, counts };
-        search.among(&scene.objects, Path::root().key("objects"), u64::from(number), "default".into())
+        search.among(&scene.objects, &Path::root().key("objects"), u64::from(number), "default".into())
     }
 }
 
@@ -33,11 +33,11 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    fn among(&self, objects: &[Object], at: Path, mut number: u64, inherited: String) -> Option<Part> {
+    fn among(&self, objects: &[Object], at: &Path, mut number: u64, inherited: String) -> Option<Part> {
         for (i, object) in objects.iter().enumerate() {
             let count = self.count(object);
             if number < count {
-                return self.within(object, at.index(i), number, inherited);
+                return self.within(object, &at.index(i), number, inherited);
             }
             number -= count;
         }
@@ -50,7 +50,7 @@ impl Search<'_> {
         count::shapes(object) + group.map_or(0, count::Count::objects) + inner.sum::<u64>()
     }
 
-    fn within(&self, object: &Object, at: Path, number: u64, inherited: String) -> Option<Part> {
+    fn within(&self, object: &Object, at: &Path, number: u64, inherited: String) -> Option<Part> {
         let material = match &object.material {
             None => inherited,
             Some(MaterialRef::Name(name)) => name.clone(),
@@ -58,10 +58,10 @@ impl Search<'_> {
         };
         if let Some(group) = &object.group {
             let objects = self.scene.groups.get(&group.0)?;
-            return self.among(objects, Path::root().key("groups").key(group.0.as_str()), number, material);
+            return self.among(objects, &Path::root().key("groups").key(group.0.as_str()), number, material);
         }
         if let Some(objects) = &object.objects {
-            return self.among(objects, at.key("objects"), number, material);
+            return self.among(objects, &at.key("objects"), number, material);
         }
         let kind = object.shape.as_ref().map_or_else(|| "sphere".into(), name_of);
         Some(Part { path: at.to_string(), kind, material })
