@@ -60,6 +60,15 @@ impl Fingerprint {
         part.push_str(value);
     }
 
+    /// The same with the camera and the settings of another.
+    #[must_use]
+    pub fn seen_as(&self, other: &Self) -> Self {
+        let of_view = |name: &str| name.starts_with("camera") || name.starts_with("render.");
+        let own = self.0.iter().filter(|(name, _)| !of_view(name));
+        let others = other.0.iter().filter(|(name, _)| of_view(name));
+        Self(own.chain(others).map(|(name, value)| (name.clone(), value.clone())).collect())
+    }
+
     /// The parts by name.
     pub fn parts(&self) -> &BTreeMap<String, String> {
         &self.0
@@ -89,7 +98,8 @@ fn digest(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex()[..32].to_owned()
 }
 
-fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {
+/// The mesh files that a scene names, each once.
+pub(crate) fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     for (name, objects) in &scene.groups {
         collect(objects, &Path::root().key("groups").key(name.as_str()), files, &mut found);

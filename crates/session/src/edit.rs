@@ -51,6 +51,22 @@ pub enum Edit {
     Reset,
 }
 
+impl Edit {
+    /// Whether nothing that comes before it matters any more.
+    pub fn supersedes(&self) -> bool {
+        matches!(self, Self::Scene(_))
+    }
+
+    /// Whether it leaves no trace of the edit just before it.
+    pub fn replaces(&self, before: &Self) -> bool {
+        match (self, before) {
+            (Self::At(_), Self::At(_)) | (Self::Reload, Self::Reload) | (Self::Scene(_), _) => true,
+            (Self::Set { path: a, .. }, Self::Set { path: b, .. }) => a == b,
+            _ => false,
+        }
+    }
+}
+
 /// Steps and turns, by the camera's own axes; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

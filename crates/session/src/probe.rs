@@ -1,5 +1,9 @@
 //! What is known about one pixel.
 
+use crate::screen::relative_error;
+use crate::subject::Subject;
+use juggler::scene::compile::Part;
+use juggler::tracer::film::{Film, TILE};
 use serde::Serialize;
 
 /// What is known about one pixel.
@@ -25,4 +29,36 @@ pub struct Probe {
     pub shape: Option<String>,
     /// The material's name, or where it is described.
     pub material: Option<String>,
+}
+
+impl Probe {
+    /// What a film of the subject's picture and one ray tell about a pixel.
+    pub fn of(subject: &Subject, film: Option<&Film>, pixel: [u32; 2]) -> Self {
+        let mut probe = Self { pixel, ..Self::default() };
+        let [width, height] = subject.picture().size();
+        let [x, y] = pixel;
+        if x >= width || y >= height {
+            return probe;
+        }
+        let place = |film: &Film| (y / TILE) as usize * film.layout().columns() as usize + (x / TILE) as usize;
+        if let Some(tile) = film.and_then(|film| film.tile(place(film))) {
+            let area = tile.pixels();
+            let at = (y.saturating_sub(area.y) as usize) * area.width as usize + x.saturating_sub(area.x) as usize;
+            probe.samples = tile.count();
+            probe.color = tile.means().get(at).filter(|_| tile.count() > 0).map(|color| color.to_array());
+            probe.noise = relative_error(&tile, at).map(|error| error as f32);
+        }
+        let center = pixel.map(|at| at as f32 + 0.5);
+        let Some((point, vertex)) = subject.seen_at(center) else { return probe };
+        let eye = subject.ray(center).origin;
+        probe.depth = Some((point - eye).length());
+        probe.position = Some(point.to_array());
+        probe.normal = Some(vertex.surface.shading_normal.to_array());
+        probe.object = Some(vertex.object);
+        if let Some(part) = Part::of(&subject.scene().description, vertex.object) {
+            probe.shape = Some(format!("{} {}", part.kind, part.path));
+            probe.material = Some(part.material);
+        }
+        probe
+    }
 }

@@ -9,9 +9,11 @@ use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::MaterialTable;
 use juggler_tracer::world::{Object, World};
+use std::sync::Arc;
 
 mod count;
 mod defaults;
+mod locate;
 mod materials;
 mod meshes;
 mod needs;
@@ -19,14 +21,16 @@ mod placing;
 mod settings;
 
 pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
+pub use locate::Part;
 pub use meshes::{Files, Library};
 pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
 
 /// A scene ready to be rendered.
+#[derive(Clone)]
 pub struct Compiled {
     /// What can be seen.
-    pub world: World,
+    pub world: Arc<World>,
     /// The cameras with their names, the one to render with first. There is always one.
     pub cameras: Vec<(String, AnyCamera)>,
     /// Size, samples, integrator and the like.
@@ -76,13 +80,25 @@ impl Assembly {
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background);
-        Compiled { world, cameras: self.cameras, settings, warnings }
+        Compiled { world: Arc::new(world), cameras: self.cameras, settings, warnings }
     }
+}
+
+/// How a scene looks at its world, which is there already: its cameras by name, the chosen one first.
+pub fn look_at(scene: &Description, world: &World) -> (Vec<(String, AnyCamera)>, Vec<Finding>) {
+    let mut findings = Vec::new();
+    settings::check(&scene.render, &mut findings);
+    let cameras = cameras(scene, &or_some(world.bounds()), &mut findings);
+    (cameras, findings)
 }
 
 /// A box around all objects that have an end.
 fn bounds(objects: &[Object]) -> Aabb {
-    let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+    or_some(objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union))
+}
+
+/// Some box where there is none.
+fn or_some(bounds: Aabb) -> Aabb {
     if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
 }
 
