@@ -62,8 +62,9 @@ export function mark(x, y) {
   const mark = byId("mark");
   const again = mark.cloneNode();
   mark.replaceWith(again);
-  again.style.left = `${x}px`;
-  again.style.top = `${y}px`;
+  const { left, top } = again.parentElement.getBoundingClientRect();
+  again.style.left = `${x - left}px`;
+  again.style.top = `${y - top}px`;
   again.hidden = false;
 }
 

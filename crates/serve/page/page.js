@@ -12,10 +12,10 @@ import { fillScenes, openScenes } from "./scenes.js";
 const byId = (id) => document.getElementById(id);
 const canvas = byId("picture");
 const picture = new Picture(canvas, byId("region"));
-const PROBE_MILLISECONDS = 60, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25;
+const PROBE_MILLISECONDS = 60, UNSEEN_MILLISECONDS = 300, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25;
 
 let status = null, catalogue = null, wheel = { steering: true, free: false, watching: 1 };
-let shown = null, asked = null;
+let asked = null;
 const probing = { mode: "off", at: null, waiting: false, last: 0 };
 let choosingRegion = false;
 
@@ -47,7 +47,6 @@ const connection = new Connection({
   },
   frame(bitmap, facts) {
     picture.show(bitmap, facts.size);
-    shown = facts;
     if (asked && facts.revision > asked.revision) {
       facts.latency = performance.now() - asked.at;
       showLatency(facts.latency);
@@ -61,13 +60,19 @@ const connection = new Connection({
 });
 
 function gotStatus(news) {
-  // A change that shows nothing new, such as to what is already so, is not waited for.
-  if (asked && news.stage === "finished" && news.revision > asked.revision && shown?.revision <= asked.revision) asked = null;
+  forgetUnseen(news);
   status = news;
-  showStatus(status, titleOf(status.scene));
+  if (catalogue) showStatus(status, titleOf(status.scene));
   notices.sceneError(status.error);
   if (!choosingRegion) picture.frame(status.region);
   if (probing.mode !== "off") askProbe();
+}
+
+// A change that shows nothing new, such as to what is already so, is not waited for.
+function forgetUnseen(news) {
+  const waited = asked;
+  if (!waited || news.stage !== "finished" || news.revision <= waited.revision) return;
+  setTimeout(() => (asked = asked === waited ? null : asked), UNSEEN_MILLISECONDS);
 }
 
 function titleOf(name) {

@@ -24,7 +24,7 @@ function fill(id, names) {
   const key = names.join("\n");
   if (control.dataset.names === key) return;
   control.dataset.names = key;
-  control.replaceChildren(...names.map((name) => element("option", { value: name }, `${name}`.replaceAll("_", " "))));
+  control.replaceChildren(...names.map((name) => element("option", { value: name }, `${name}`.replaceAll("_", " ") || "choose")));
 }
 
 /// Tells `edit(edit)` what people do; `fit()` is the size of the canvas in pixels.

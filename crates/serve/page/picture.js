@@ -52,7 +52,8 @@ export class Picture {
   }
 
   near(x, y) {
-    return [(x - this.box.left) * this.scale, (y - this.box.top) * this.scale];
+    const { left, top } = this.canvas.getBoundingClientRect();
+    return [(x - left - this.box.left) * this.scale, (y - top - this.box.top) * this.scale];
   }
 
   /// The part between two places on the screen, as far as it is on the picture.

@@ -13,10 +13,10 @@ fn two_hundred_connections_are_too_many() {
     let mut streams: Vec<_> = (0..200).map(|_| serving.connect()).collect();
     serving.wait_for_line("too many connections");
     // Those that were taken get an answer, the others were told so and closed.
-    let refused = streams.iter_mut().rev().take(100).filter(|stream| {
+    let refused = streams.iter_mut().rev().take(100).filter_map(|stream| {
         let mut text = String::new();
-        let _ = (&mut &***stream).read_to_string(&mut text);
-        text.is_empty() || text.starts_with("HTTP/1.1 503")
+        let _ = stream.read_to_string(&mut text);
+        (text.is_empty() || text.starts_with("HTTP/1.1 503")).then_some(())
     });
     assert_eq!(refused.count(), 100);
     let mut first = streams.remove(0);
@@ -117,5 +117,25 @@ fn a_long_head_is_refused() {
     let many: String = (0..2000).map(|index| format!("X{index}: a\r\n")).collect();
     let answer = serving.ask("GET", "/", &[&format!("Host: {}", serving.host()), many.trim_end()]);
     assert!(answer.status == 431 || answer.status == 0, "{answer:?}");
+    assert!(serving.is_alive());
+}
+
+#[test]
+fn bytes_that_are_no_web_socket_end_their_connection() {
+    let serving = serve();
+    for turn in 0..50 {
+        let mut stream = serving.connect();
+        let host = serving.host();
+        write!(
+            stream,
+            "GET /socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n\
+            Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+        )
+        .unwrap();
+        let bytes: Vec<u8> = (0..4000_u32).map(|index| (index.wrapping_mul(2_654_435_761) >> 24) as u8 ^ turn).collect();
+        let _ = stream.write_all(&bytes);
+        let _ = stream.shutdown(std::net::Shutdown::Write);
+        let _ = stream.read_to_end(&mut Vec::new());
+    }
     assert!(serving.is_alive());
 }
