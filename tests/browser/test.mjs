@@ -13,7 +13,7 @@ const file = join(folder, "ball.json");
 const scene = (color) => `{
   "version": 1,
   "title": "Ball",
-  "render": {"size": [640, 480], "samples": 16},
+  "render": {"size": [640, 480], "samples": 4},
   "cameras": {
     "main": {"perspective": {"eye": [0, 1, 6], "look_at": [0, 1, 0]}},
     "top": {"perspective": {"eye": [0, 6, 1], "look_at": [0, 0, 0]}}
@@ -136,9 +136,9 @@ async function tools(tab) {
   await change(tab, () => tab.page.locator("#exposure").fill("0"));
   await change(tab, () => tab.page.locator("#camera").selectOption("top"));
   await change(tab, () => tab.page.locator("#camera").selectOption("main"));
-  await tab.page.locator("#samples").fill("32");
+  await tab.page.locator("#samples").fill("8");
   await keyboard.press("Enter");
-  await tab.told("samples", (status) => status.samples_wanted === 32 && status.stage === "finished");
+  await tab.told("samples", (status) => status.samples_wanted === 8 && status.stage === "finished");
   await tab.page.locator("#picture").focus();
   await keyboard.press("?");
   await until("the help", () => tab.visible("#help"));
@@ -154,7 +154,7 @@ async function save(tab) {
   await download.saveAs(path);
   assert.equal(readFileSync(path).readUInt32BE(16), 640, "its width");
   const rendered = join(folder, "rendered.png");
-  execFileSync(program, ["render", file, "--samples", "32", "-o", rendered, "--quiet"]);
+  execFileSync(program, ["render", file, "--samples", "8", "-o", rendered, "--quiet"]);
   const verdict = spawnSync(program, ["compare", path, rendered], { encoding: "utf8" });
   assert.equal(verdict.status, 0, `the saved picture is another one: ${verdict.stdout}${verdict.stderr}`);
 }

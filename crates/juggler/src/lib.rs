@@ -22,7 +22,7 @@
 //! [`imaging`], [`film`]. The folder `examples/` is a course in four steps.
 
 mod error;
-pub mod kinds;
+mod kinds;
 pub mod memory;
 mod part;
 mod picture;

@@ -8,6 +8,7 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -52,8 +53,13 @@ pub async fn run(listener: TcpListener, router: Router, hub: Arc<Hub>, limits: L
 async fn answer(stream: TcpStream, router: Router, limits: Limits, place: OwnedSemaphorePermit) -> Result<(), String> {
     // Small messages go at once: they are what one waits for.
     stream.set_nodelay(true).map_err(|error| error.to_string())?;
-    let place = Arc::new(place);
-    let service = TowerToHyperService::new(router.layer(Extension(Place(Arc::clone(&place)))));
+    // Browsers open connections ahead of need: one that says nothing is closed without a word.
+    if tokio::time::timeout(limits.head, stream.readable()).await.is_err() {
+        return Ok(());
+    }
+    let place = Place { seat: Arc::new(place), served: Arc::default() };
+    let served = Arc::clone(&place.served);
+    let service = TowerToHyperService::new(router.layer(Extension(place)));
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(limits.head)
@@ -61,7 +67,7 @@ async fn answer(stream: TcpStream, router: Router, limits: Limits, place: OwnedS
         .serve_connection(TokioIo::new(stream), service)
         .with_upgrades();
     match tokio::time::timeout(limits.connection, connection).await {
-        Ok(Err(error)) if error.is_timeout() => Err("the request's head took too long".into()),
+        Ok(Err(error)) if error.is_timeout() && !served.load(Relaxed) => Err("the request's head took too long".into()),
         Ok(Err(error)) if error.is_parse() || error.is_parse_too_large() => Err(format!("no HTTP: {error}")),
         // Others went away, which they may.
         Ok(Ok(()) | Err(_)) => Ok(()),
@@ -71,4 +77,9 @@ async fn answer(stream: TcpStream, router: Router, limits: Limits, place: OwnedS
 
 /// A connection's place among those that may be there; a WebSocket holds it on.
 #[derive(Clone)]
-pub struct Place(#[expect(dead_code, reason = "held, not read")] Arc<OwnedSemaphorePermit>);
+pub struct Place {
+    #[expect(dead_code, reason = "held, not read")]
+    seat: Arc<OwnedSemaphorePermit>,
+    /// Whether a request came: what is kept open after it is no attack.
+    pub served: Arc<AtomicBool>,
+}

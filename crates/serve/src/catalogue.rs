@@ -8,7 +8,7 @@ use juggler::scene::{BuiltIn, Scene, built_in_scenes};
 use juggler::tracer::integrator::AnyIntegrator;
 use juggler::tracer::render::Control;
 use juggler::tracer::sampler::AnySampler;
-use juggler::{Picture, Settings, kinds};
+use juggler::{Picture, Settings};
 use juggler_session::Channel;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -64,9 +64,9 @@ fn listing(scene: Option<&str>) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "scenes": built_in_scenes().iter().map(of).collect::<Vec<_>>(),
         "file": file.map(|name| json!({"name": name, "title": Path::new(name).file_name().map(|n| n.to_string_lossy())})),
-        "integrators": kinds::names::<AnyIntegrator>(),
-        "samplers": kinds::names::<AnySampler>(),
-        "tones": kinds::names::<AnyCurve>(),
+        "integrators": juggler::names::<AnyIntegrator>(),
+        "samplers": juggler::names::<AnySampler>(),
+        "tones": juggler::names::<AnyCurve>(),
         "schedulers": ["work-stealing", "row-queue", "static-rows"],
         "channels": Channel::ALL,
         "most": {"edge": MAX_EDGE, "pixels": MAX_PIXELS, "samples": MAX_SAMPLES},

@@ -14,6 +14,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::{Extension, Router};
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Sent with everything: nothing from elsewhere, nothing kept, no page of others around it.
 const HEADERS: [(HeaderName, &str); 6] = [
@@ -47,9 +48,11 @@ pub fn router(hub: Arc<Hub>) -> Router {
 async fn guard(
     State(hub): State<Arc<Hub>>,
     Extension(peer): Extension<Peer>,
+    Extension(place): Extension<Place>,
     request: Request,
     next: Next,
 ) -> Response {
+    place.served.store(true, Relaxed);
     let (parts, body) = request.into_parts();
     let entry = hub.access.check(&parts, peer);
     let mut response = match &entry {

@@ -132,7 +132,8 @@ fn bytes_that_are_no_web_socket_end_their_connection() {
             Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
         )
         .unwrap();
-        let bytes: Vec<u8> = (0..4000_u32).map(|index| (index.wrapping_mul(2_654_435_761) >> 24) as u8 ^ turn).collect();
+        let bytes: Vec<u8> =
+            (0..4000_u32).map(|index| (index.wrapping_mul(2_654_435_761) >> 24) as u8 ^ turn).collect();
         let _ = stream.write_all(&bytes);
         let _ = stream.shutdown(std::net::Shutdown::Write);
         let _ = stream.read_to_end(&mut Vec::new());
