@@ -30,7 +30,7 @@ writeFileSync(file, scene("[0.8, 0.1, 0.1]"));
 
 const start = performance.now();
 const say = (text) => console.log(`${((performance.now() - start) / 1000).toFixed(1).padStart(6)} s  ${text}`);
-const words = (port) => [file, "--addr", `127.0.0.1:${port}`, "--threads", "2"];
+const words = (port) => [file, "--size", "640x480", "--addr", `127.0.0.1:${port}`, "--threads", "2"];
 let server = await startServer(program, words(0));
 const browser = await startBrowser(executable);
 const desktop = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true });
