@@ -37,5 +37,8 @@ export function openScenes(current) {
     button.ariaCurrent = button.dataset.name === current ? "true" : null;
   }
   byId("scenes").showModal();
-  document.querySelector(".card.current")?.scrollIntoView({ block: "center" });
+  const shown = document.querySelector(".card.current");
+  shown?.scrollIntoView({ block: "center" });
+  // The search would bring up a phone's keyboard.
+  if (matchMedia("(pointer: coarse)").matches) shown?.focus();
 }
