@@ -12,6 +12,8 @@ mod merge;
 mod render;
 mod scenes;
 mod schema;
+#[cfg(feature = "serve")]
+mod serve;
 
 /// Every command.
 #[derive(Debug, Subcommand)]
@@ -33,6 +35,9 @@ pub enum Command {
     Compare(compare::Compare),
     /// List the built-in scenes
     Scenes,
+    /// Look at a scene in a browser, fly through it, change it
+    #[cfg(feature = "serve")]
+    Serve(serve::Serve),
     /// Measure this machine
     Bench(bench::Bench),
 }
@@ -49,6 +54,8 @@ impl Command {
             Self::Convert(convert) => convert.run(),
             Self::Compare(compare) => compare.run(),
             Self::Scenes => scenes::run(),
+            #[cfg(feature = "serve")]
+            Self::Serve(serve) => serve.run(),
             Self::Bench(bench) => bench.run(),
         }
     }

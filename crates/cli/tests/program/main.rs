@@ -10,5 +10,6 @@ mod merging;
 mod meshes;
 mod parts;
 mod pictures;
+mod serving;
 mod signals;
 mod statistics;

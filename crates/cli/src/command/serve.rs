@@ -1,0 +1,113 @@
+//! `juggler serve`: the interactive viewer in a browser, also from a machine without a screen.
+
+use crate::console;
+use crate::failure::{Failure, plain};
+use crate::interrupt::Interrupts;
+use crate::source;
+use crate::value;
+use clap::Args;
+use juggler_serve::{Options, ServeError, Server};
+use juggler_session::Session;
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::time::Duration;
+
+/// What is shown when nothing is said.
+const FIRST_SCENE: &str = "juggler";
+/// How often signals are looked for.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Flags of `juggler serve`.
+#[derive(Debug, Args)]
+pub struct Serve {
+    /// A scene file, which is watched, or the name of a built-in scene [default: juggler]
+    scene: Option<String>,
+
+    /// Where to listen; port 0 takes a free one
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address, default_value = "127.0.0.1:8080")]
+    addr: SocketAddr,
+
+    /// Serve at an address that other machines reach; a token, printed at start, is then needed for every request
+    #[arg(long)]
+    allow_remote: bool,
+
+    /// Width and height in pixels, instead of the scene's
+    #[arg(long, value_name = "WxH", value_parser = value::size)]
+    size: Option<[u32; 2]>,
+
+    /// Threads that render [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Serve {
+    /// Prints the address and serves until a signal comes.
+    pub fn run(self) -> Result<(), Failure> {
+        let interrupts = Interrupts::watch()?;
+        if let Some(scene) = &self.scene {
+            check(scene)?;
+        }
+        let name = self.scene.as_deref().unwrap_or(FIRST_SCENE);
+        let threads = self.threads.map_or(0, usize::from);
+        let options = juggler_session::Options { size: self.size, threads, watch: true, ..Default::default() };
+        let session = Session::open(name, options);
+        let options =
+            Options { address: self.addr, allow_remote: self.allow_remote, scene: self.scene, ..Options::default() };
+        let server = Server::bind(session, options, console::say)?;
+        let url = server.url();
+        let _running = server.start()?;
+        console::print(&format!("juggler serves at {url}"))?;
+        loop {
+            if let Some(signal) = interrupts.caught() {
+                return Err(signal);
+            }
+            std::thread::sleep(PAUSE);
+        }
+    }
+}
+
+/// A scene that is not there is refused at once; one with mistakes may be mended while it is watched.
+fn check(scene: &str) -> Result<(), Failure> {
+    if scene == "-" {
+        return Err(Failure::Wrong(
+            "standard input cannot be watched: give a scene file or the name of a built-in scene".into(),
+        ));
+    }
+    match source::load(scene, None) {
+        Ok(_) | Err(Failure::Scene(_)) => Ok(()),
+        Err(failure) => Err(failure),
+    }
+}
+
+/// `127.0.0.1:8080`, `[::1]:8080`, `localhost:8080`.
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let wrong = "an address is ADDRESS:PORT, such as 127.0.0.1:8080";
+    let found = text.to_socket_addrs().map_err(|error| format!("{wrong} ({})", plain(&error)))?;
+    let mut addresses: Vec<_> = found.collect();
+    // Version 4 first: it is what is printed and typed.
+    addresses.sort_by_key(SocketAddr::is_ipv6);
+    addresses.first().copied().ok_or_else(|| wrong.to_owned())
+}
+
+impl From<ServeError> for Failure {
+    fn from(error: ServeError) -> Self {
+        match error {
+            ServeError::Remote(_) => Self::Wrong(error.to_string()),
+            ServeError::Busy(_) | ServeError::Listen { .. } | ServeError::System(_) => Self::System(error.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_read() {
+        assert_eq!(address("127.0.0.1:0").unwrap(), SocketAddr::from(([127, 0, 0, 1], 0)));
+        assert_eq!(address("localhost:81").unwrap(), SocketAddr::from(([127, 0, 0, 1], 81)));
+        assert!(address("[::1]:8080").unwrap().is_ipv6());
+        for wrong in ["", "8080", ":8080x", "127.0.0.1", "127.0.0.1:99999"] {
+            assert!(address(wrong).unwrap_err().contains("such as"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `juggler serve` from the outside.
+#![cfg(all(unix, feature = "serve"))]
+
+use crate::harness::Folder;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A server that has said where it is.
+fn start(folder: &Folder, line: &str) -> (Child, String) {
+    let mut child = folder.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut first = String::new();
+    BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut first).unwrap();
+    let url = first.trim().strip_prefix("juggler serves at http://").expect("an address").to_owned();
+    (child, url)
+}
+
+fn end(mut child: Child, signal: &str) -> (Option<i32>, String) {
+    let start = Instant::now();
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+    let mut errors = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut errors).unwrap();
+    let status = child.wait().unwrap().code();
+    assert!(start.elapsed() < Duration::from_secs(5), "it took too long to stop");
+    (status, errors)
+}
+
+#[test]
+fn it_says_where_it_is_and_ends_by_a_signal() {
+    for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
+        let folder = Folder::new();
+        let (child, url) = start(&folder, "serve ball.json --addr 127.0.0.1:0 --threads 1");
+        let host = url.trim_end_matches('/');
+        let mut stream = TcpStream::connect(host).unwrap();
+        write!(stream, "GET / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        assert!(answer.starts_with("HTTP/1.1 200") && answer.contains("<title>juggler</title>"), "{answer}");
+        assert_eq!(end(child, signal), (Some(status), "interrupted\n".to_owned()));
+        assert!(folder.files().is_empty());
+    }
+}
+
+#[test]
+fn other_machines_need_a_flag_and_a_token() {
+    let folder = Folder::new();
+    let message = folder.bad("serve ball.json --addr 0.0.0.0:0", 2);
+    assert!(message.contains("--allow-remote") && message.contains("ssh"), "{message}");
+    let (child, url) = start(&folder, "serve ball.json --addr 0.0.0.0:0 --allow-remote --threads 1");
+    assert!(url.split_once("/?token=").unwrap().1.len() == 32, "{url}");
+    let _ = end(child, "-TERM");
+}
+
+#[test]
+fn what_cannot_be_served_is_said() {
+    let folder = Folder::new();
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let message = folder.bad(&format!("serve ball.json --addr {}", taken.local_addr().unwrap()), 3);
+    assert!(message.contains("in use"), "{message}");
+    assert!(folder.bad("serve bal.json --addr 127.0.0.1:0", 3).contains("ball.json"));
+    assert!(folder.bad("serve no-such-scene --addr 127.0.0.1:0", 2).contains("no-such-scene"));
+    assert!(folder.bad("serve - --addr 127.0.0.1:0", 2).contains("standard input"));
+    assert!(folder.bad("serve ball.json --addr nonsense", 2).contains("127.0.0.1:8080"));
+}

@@ -1,0 +1,69 @@
+// From what is pressed and dragged to what the session is asked for; the same numbers as in the native window.
+
+const SIZES_PER_SECOND = 0.25, DEGREES_PER_SECOND = 60, FAST = 4;
+const ORBIT_DEGREES = 0.35, PARALLEL_DEGREES = 0.15, WHEEL_POINTS = 400;
+const LONGEST_STEP = 0.1;
+const DEFAULT_FIELD = 40, DEFAULT_HEIGHT = 4;
+const RADIANS = Math.PI / 180;
+
+/// Whether a drag turns the camera (`fly`) or the scene (`orbit`), and how fast keys are.
+export const steering = { mode: "fly", speed: 1 };
+
+/// How far a pixel in the middle of the picture reaches: as an angle, and at the point of interest.
+export function lens(status) {
+  const [kind, camera] = Object.entries(status.camera ?? {})[0] ?? ["perspective", {}];
+  const [width, height] = status.size;
+  if (kind === "orthographic") {
+    const tall = camera.height ?? (camera.width ? (camera.width * height) / width : DEFAULT_HEIGHT);
+    return { degrees: 0, units: tall / height };
+  }
+  const half = halfHeight(camera, height / width);
+  const eye = camera.eye ?? [0, 0, 0];
+  const distance = Math.hypot(...eye.map((value, axis) => value - status.interest[axis]));
+  const units = (2 * half * Math.max(distance, status.extent * 1e-3)) / height;
+  return { degrees: Math.atan((2 * half) / height) / RADIANS, units };
+}
+
+/// Half the height of a film one unit in front of the eye.
+function halfHeight(camera, shape) {
+  if (camera.horizontal_fov_degrees) return Math.tan((camera.horizontal_fov_degrees * RADIANS) / 2) * shape;
+  if (camera.screen) return ((camera.screen.width / 2) * shape) / camera.screen.distance;
+  if (camera.view_plane) return camera.view_plane.height / 2 / camera.view_plane.distance;
+  return Math.tan(((camera.vertical_fov_degrees ?? DEFAULT_FIELD) * RADIANS) / 2);
+}
+
+/// Keys that are held for some seconds.
+export function held(motions, fast, seconds, extent) {
+  const time = Math.min(seconds, LONGEST_STEP) * (fast ? FAST : 1);
+  const step = extent * SIZES_PER_SECOND * steering.speed * time;
+  const fly = {};
+  for (const [axis, sign] of motions) {
+    fly[axis] = (fly[axis] ?? 0) + sign * (axis.endsWith("_degrees") ? DEGREES_PER_SECOND * time : step);
+  }
+  return Object.values(fly).some((value) => value !== 0) ? { fly } : null;
+}
+
+/// A drag over so many points of the screen: what was under the pointer stays there, or the scene turns.
+export function drag(x, y, scale, status) {
+  if (steering.mode === "orbit") return { orbit: { yaw_degrees: x * ORBIT_DEGREES, pitch_degrees: y * ORBIT_DEGREES } };
+  const degrees = lens(status).degrees * scale || PARALLEL_DEGREES;
+  return { fly: { yaw_degrees: -x * degrees, pitch_degrees: y * degrees } };
+}
+
+/// The camera moves aside; the point of interest stays under the pointer.
+export function slide(x, y, scale, status) {
+  const units = lens(status).units * scale;
+  return { fly: { right: -x * units, up: y * units } };
+}
+
+/// By the wheel or two fingers, by this factor.
+export function closer(factor) {
+  const bounded = Math.min(Math.max(factor, 0.1), 10);
+  return steering.mode === "orbit" ? { orbit: { closer: bounded } } : { zoom: bounded };
+}
+
+/// The factor of a turn of the wheel, towards the hand being positive.
+export function wheelFactor(event) {
+  const points = event.deltaY * [1, 20, 400][event.deltaMode];
+  return Math.exp(-points / (event.ctrlKey ? WHEEL_POINTS / 4 : WHEEL_POINTS));
+}

@@ -1,0 +1,226 @@
+// Puts the page together: the server's messages to the picture and the panel, gestures and keys to the server.
+
+import { held, steering } from "./camera.js";
+import { Connection } from "./connection.js";
+import { Keys } from "./keys.js";
+import * as notices from "./notices.js";
+import { setMode, setSpeed, showLatency, showStatus, watchPanel } from "./panel.js";
+import { Picture } from "./picture.js";
+import { watchPointer } from "./pointer.js";
+import { fillScenes, openScenes } from "./scenes.js";
+
+const byId = (id) => document.getElementById(id);
+const canvas = byId("picture");
+const picture = new Picture(canvas, byId("region"));
+const PROBE_MILLISECONDS = 60, UNSEEN_MILLISECONDS = 300, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25;
+
+let status = null, catalogue = null, wheel = { steering: true, free: false, watching: 1 };
+let asked = null;
+const probing = { mode: "off", at: null, waiting: false, last: 0 };
+let choosingRegion = false;
+
+// The token has become a cookie.
+if (new URLSearchParams(location.search).has("token")) history.replaceState(null, "", "/");
+
+// Asks the server for a change, if this page steers.
+function edit(change) {
+  if (!change) return;
+  if (!connection.isOpen) return;
+  if (!wheel.steering && !wheel.free) return notices.toast("Another page steers: take the wheel first");
+  asked ??= { at: performance.now(), revision: status?.revision ?? 0 };
+  connection.send({ edit: change });
+}
+
+const connection = new Connection({
+  open() {
+    notices.connectionLost(null);
+    [status, asked, probing.waiting] = [null, null, false];
+  },
+  lost(pause, why) {
+    byId("stage-chip").dataset.stage = "lost";
+    byId("stage-text").textContent = "offline";
+    notices.connectionLost(pause, why);
+  },
+  message(message) {
+    const [kind, value] = Object.entries(message)[0];
+    ({ status: gotStatus, wheel: gotWheel, probe: gotProbe, refused: notices.toast })[kind]?.(value);
+  },
+  frame(bitmap, facts) {
+    picture.show(bitmap, facts.size);
+    if (asked && facts.revision > asked.revision) {
+      facts.latency = performance.now() - asked.at;
+      showLatency(facts.latency);
+      asked = null;
+    }
+    canvas.dataset.revision = facts.revision;
+    canvas.dataset.number = facts.number;
+    canvas.dataset.kind = facts.kind;
+    canvas.dataset.latency = facts.latency ?? canvas.dataset.latency ?? "";
+  },
+});
+
+function gotStatus(news) {
+  forgetUnseen(news);
+  status = news;
+  if (catalogue) showStatus(status, titleOf(status.scene));
+  notices.sceneError(status.error);
+  if (!choosingRegion) picture.frame(status.region);
+  if (probing.mode !== "off") askProbe();
+}
+
+// A change that shows nothing new, such as to what is already so, is not waited for.
+function forgetUnseen(news) {
+  const waited = asked;
+  if (!waited || news.stage !== "finished" || news.revision <= waited.revision) return;
+  setTimeout(() => (asked = asked === waited ? null : asked), UNSEEN_MILLISECONDS);
+}
+
+function titleOf(name) {
+  const own = catalogue?.file?.name === name ? catalogue.file : catalogue?.scenes.find((scene) => scene.name === name);
+  return own?.title || name || "juggler";
+}
+
+function gotWheel(news) {
+  wheel = news;
+  notices.wheel(news);
+}
+
+function gotProbe(facts) {
+  probing.waiting = false;
+  if (probing.mode !== "off") notices.probe(facts);
+}
+
+function askProbe() {
+  const now = performance.now();
+  if (!probing.at || probing.waiting || now - probing.last < PROBE_MILLISECONDS) return;
+  [probing.waiting, probing.last] = [true, now];
+  connection.send({ probe: probing.at.map(Math.floor) });
+}
+
+function setProbing(mode) {
+  probing.mode = mode;
+  byId("probe-button").ariaPressed = `${mode !== "off"}`;
+  if (mode === "off") notices.probe(null);
+  else askProbe();
+}
+
+function setRegionChoice(on) {
+  choosingRegion = on;
+  canvas.classList.toggle("choosing", on);
+  byId("region-button").ariaPressed = `${on}`;
+}
+
+function probeAt(point) {
+  const place = picture.at(...point);
+  if (!place) return;
+  probing.at = place;
+  askProbe();
+}
+
+watchPointer(canvas, picture, {
+  edit,
+  status: () => status,
+  choosesRegion: () => keys.region || choosingRegion,
+  hover(point) {
+    if (probing.mode === "follow") probeAt(point);
+  },
+  tap(point) {
+    if (probing.mode !== "off") return probeAt(point);
+    const place = picture.at(...point);
+    if (!place) return;
+    notices.mark(...point);
+    edit({ focus: place });
+  },
+  doubleTap(point) {
+    edit({ frame: picture.at(...point) });
+  },
+  region(from, to, done) {
+    const rect = picture.between(from, to);
+    picture.frame(rect);
+    if (!done) return (choosingRegion = true);
+    setRegionChoice(false);
+    edit({ region: rect.width > 1 && rect.height > 1 ? rect : null });
+  },
+});
+
+const commands = {
+  faster: () => setSpeed(steering.speed * SPEED_STEP),
+  slower: () => setSpeed(steering.speed / SPEED_STEP),
+  mode: () => setMode(steering.mode === "fly" ? "orbit" : "fly"),
+  frameAll: () => edit({ frame: null }),
+  nextCamera() {
+    if (!status?.cameras.length) return;
+    const next = (status.cameras.indexOf(byId("camera").value) + 1) % status.cameras.length;
+    byId("camera").value = status.cameras[next];
+    edit({ camera: status.cameras[next] });
+  },
+  bookmark() {
+    togglePanel(true);
+    byId("bookmark-name").focus();
+  },
+  whole: () => edit({ region: null }),
+  probe: () => setProbing({ off: "follow", follow: "pin", pin: "off" }[probing.mode]),
+  brighter: () => edit({ setting: { exposure: (status?.exposure ?? 0) + EXPOSURE_STEP } }),
+  darker: () => edit({ setting: { exposure: (status?.exposure ?? 0) - EXPOSURE_STEP } }),
+  save: () => byId("save-png").click(),
+  play: () => status?.frames > 1 && edit({ play: !status.playing }),
+  frameBefore: () => stepFrame(-1),
+  frameAfter: () => stepFrame(1),
+  panel: () => togglePanel(),
+  scenes: () => openScenes(status?.scene),
+  help: () => byId("help").showModal(),
+  reset: () => edit("reset"),
+  close() {
+    if (choosingRegion) setRegionChoice(false);
+    else if (probing.mode !== "off") setProbing("off");
+    else byId("error").classList.add("folded");
+  },
+};
+for (let index = 0; index < 8; index += 1) commands[`channel${index}`] = () => catalogue && edit({ show: catalogue.channels[index] });
+
+function stepFrame(step) {
+  if (!(status?.frames > 1)) return;
+  edit({ at: (Math.round(status.frame) + step + status.frames) % status.frames });
+}
+
+const keys = new Keys({
+  commands,
+  hold: (motions, fast, seconds) => status && edit(held(motions, fast, seconds, status.extent)),
+  isBlocked: () => document.querySelector("dialog[open]") !== null,
+});
+
+function togglePanel(open = document.body.classList.contains("panel-closed")) {
+  document.body.classList.toggle("panel-closed", !open);
+  for (const id of ["toggle-panel", "sheet-handle"]) byId(id).ariaExpanded = `${open}`;
+}
+
+byId("toggle-panel").onclick = () => togglePanel();
+byId("sheet-handle").onclick = () => togglePanel();
+byId("open-help").onclick = commands.help;
+byId("open-scenes").onclick = commands.scenes;
+byId("take-wheel").onclick = () => connection.send({ steer: true });
+byId("connection").onclick = () => connection.retry();
+byId("fold-error").onclick = () => byId("error").classList.toggle("folded");
+byId("probe-button").onclick = () => setProbing(probing.mode === "off" ? "follow" : "off");
+byId("region-button").onclick = () => setRegionChoice(!choosingRegion);
+byId("play").onclick = commands.play;
+byId("time").oninput = ({ target }) => edit({ at: Number(target.value) });
+for (const dialog of document.querySelectorAll("dialog")) {
+  dialog.addEventListener("click", ({ target }) => {
+    if (target === dialog || target.closest("[data-close]")) dialog.close();
+  });
+}
+if (matchMedia("(max-width: 720px)").matches) togglePanel(false);
+setMode(steering.mode);
+notices.fillHelp();
+
+async function readCatalogue() {
+  const answer = await fetch("/catalogue.json");
+  if (!answer.ok) return;
+  catalogue = await answer.json();
+  const fit = () => [canvas.width, canvas.height];
+  watchPanel(catalogue, edit, fit);
+  fillScenes(catalogue, (name) => edit({ scene: name }));
+  if (status) showStatus(status, titleOf(status.scene));
+}
+readCatalogue();

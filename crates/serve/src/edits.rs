@@ -1,0 +1,156 @@
+//! What a page may ask for. A page sees and changes the picture; it reads no file but the one scene that the server was
+//! started with, and writes none, but for bookmarks of somebody at this very machine.
+
+use juggler::scene::built_in_scenes;
+use juggler_session::{Edit, Fly, Orbit, Setting};
+use serde_json::Value;
+
+/// Longest side of a picture.
+pub const MAX_EDGE: u32 = 8192;
+/// Most pixels of a picture.
+pub const MAX_PIXELS: u64 = 1 << 24;
+/// Most samples of a pixel.
+pub const MAX_SAMPLES: u32 = 1 << 24;
+/// Most threads.
+pub const MAX_THREADS: usize = 256;
+/// Longest name of anything.
+const MAX_NAME: usize = 100;
+/// Where a scene's values may be changed: none of these names a file or decides how much there is.
+const OPEN_PLACES: [&str; 6] = ["/materials/", "/lights/", "/background", "/camera/", "/cameras/", "/tone/"];
+
+/// Whether a page may have this done, or why not. `scene` is the file that the server was started with; `local` pages are
+/// on this machine.
+pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String> {
+    match edit {
+        Edit::Scene(name) => check_scene(name, scene),
+        Edit::Fly(Fly { right, up, forward, yaw_degrees, pitch_degrees, roll_degrees }) => {
+            finite(&[right, up, forward, yaw_degrees, pitch_degrees, roll_degrees].map(|number| f64::from(*number)))
+        }
+        Edit::Orbit(Orbit { yaw_degrees, pitch_degrees, closer }) => {
+            finite(&[*yaw_degrees, *pitch_degrees, *closer].map(f64::from))
+        }
+        Edit::Zoom(factor) => finite(&[f64::from(*factor)]),
+        Edit::Focus(pixel) | Edit::Frame(Some(pixel)) => finite(&pixel.map(f64::from)),
+        Edit::At(frame) => finite(&[*frame]),
+        Edit::Camera(name) => short(name),
+        Edit::Bookmark(_) if !local => Err("bookmarks are kept in the scene's file: only from this machine".into()),
+        Edit::Bookmark(name) if name.trim().is_empty() => Err("a bookmark needs a name".into()),
+        Edit::Bookmark(name) => short(name),
+        Edit::Look(camera) => check_value(camera),
+        Edit::Set { path, value } => check_place(path).and_then(|()| check_value(value)),
+        Edit::Setting(setting) => check_setting(setting),
+        Edit::Reload | Edit::Frame(None) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) | Edit::Reset => Ok(()),
+    }
+}
+
+fn check_scene(name: &str, own: Option<&str>) -> Result<(), String> {
+    if own == Some(name) {
+        return Ok(());
+    }
+    // A file that happens to be called like a built-in scene would come before it.
+    let built_in = built_in_scenes().iter().any(|scene| scene.name == name);
+    if built_in && !std::path::Path::new(name).exists() {
+        return Ok(());
+    }
+    Err("pages may choose built-in scenes and the one that the server was started with".into())
+}
+
+fn check_setting(setting: &Setting) -> Result<(), String> {
+    match setting {
+        Setting::Size([width, height]) => {
+            let edges = 1..=MAX_EDGE;
+            let fits = edges.contains(width) && edges.contains(height);
+            let pixels = u64::from(*width) * u64::from(*height);
+            let most = format!("a size is 1 to {MAX_EDGE} pixels each way, and not more than {MAX_PIXELS} in all");
+            if fits && pixels <= MAX_PIXELS { Ok(()) } else { Err(most) }
+        }
+        Setting::Samples(samples) if !(1..=MAX_SAMPLES).contains(samples) => {
+            Err(format!("samples are 1 to {MAX_SAMPLES}"))
+        }
+        Setting::Threads(threads) if !(1..=MAX_THREADS).contains(threads) => {
+            Err(format!("threads are 1 to {MAX_THREADS}"))
+        }
+        Setting::Exposure(stops) if !(-64.0..=64.0).contains(stops) => Err("an exposure is -64 to 64 stops".into()),
+        Setting::Integrator(name) | Setting::Sampler(name) | Setting::Tone(name) | Setting::Scheduler(name) => {
+            short(name)
+        }
+        Setting::Samples(_) | Setting::Threads(_) | Setting::Exposure(_) | Setting::MaxDepth(_) | Setting::Seed(_) => {
+            Ok(())
+        }
+    }
+}
+
+fn finite(numbers: &[f64]) -> Result<(), String> {
+    if numbers.iter().all(|number| number.is_finite()) { Ok(()) } else { Err("a number is too large".into()) }
+}
+
+fn short(name: &str) -> Result<(), String> {
+    if name.chars().count() <= MAX_NAME { Ok(()) } else { Err(format!("a name has at most {MAX_NAME} characters")) }
+}
+
+fn check_place(path: &str) -> Result<(), String> {
+    let file = path.split('/').any(|step| step == "file");
+    if !file && OPEN_PLACES.iter().any(|place| path.starts_with(place)) {
+        return Ok(());
+    }
+    Err(format!("pages may change values below {}", OPEN_PLACES.join(" ")))
+}
+
+/// Values without names of files: numbers, colours, and what is made of them.
+fn check_value(value: &Value) -> Result<(), String> {
+    match value {
+        Value::Array(values) => values.iter().try_for_each(check_value),
+        Value::Object(members) if members.contains_key("file") => Err("pages may not name files".into()),
+        Value::Object(members) => members.values().try_for_each(check_value),
+        Value::String(text) if !text.starts_with('#') => {
+            Err("pages may set numbers and colours, no other texts".into())
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn allowed(edit: Value) -> bool {
+        let edit: Edit = serde_json::from_value(edit).unwrap();
+        check(&edit, Some("mine/scene.json"), false).is_ok()
+    }
+
+    #[test]
+    fn no_other_file_is_read() {
+        assert!(allowed(json!({"scene": "juggler"})) && allowed(json!({"scene": "mine/scene.json"})));
+        for name in ["/etc/passwd", "../scenes/juggler.json", "mine/./scene.json", "juggler.json", "", "-"] {
+            assert!(!allowed(json!({"scene": name})), "{name}");
+        }
+        let set = |path: &str, value: Value| allowed(json!({"set": {"path": path, "value": value}}));
+        assert!(set("/materials/red/phong/diffuse", json!("#ff0000")) && set("/lights/0/point/intensity", json!(3)));
+        assert!(set("/materials/red/phong", json!({"diffuse": [1, 0, 0]})));
+        for path in ["", "/", "/include", "/render/size", "/objects/0", "/textures/a/image/file", "/materials/a/file"] {
+            assert!(!set(path, json!(1)), "{path}");
+        }
+        for value in [json!("/etc/passwd"), json!({"image": {"file": "#a"}}), json!([["a"]])] {
+            assert!(!set("/materials/red/phong/diffuse", value.clone()), "{value}");
+        }
+        assert!(allowed(json!({"look": {"perspective": {"eye": [0, 1, 2]}}})));
+    }
+
+    #[test]
+    fn bookmarks_are_for_people_at_this_machine() {
+        let bookmark = |name: &str, local| check(&Edit::Bookmark(name.into()), None, local).is_ok();
+        assert!(bookmark("a", true) && !bookmark("a", false) && !bookmark(" ", true));
+        assert!(!bookmark(&"a".repeat(101), true));
+    }
+
+    #[test]
+    fn no_picture_is_too_large() {
+        let size = |width: u32, height: u32| allowed(json!({"setting": {"size": [width, height]}}));
+        assert!(size(4096, 4096) && size(8192, 2048) && size(1, 1));
+        assert!(!size(0, 5) && !size(8192, 8192) && !size(u32::MAX, u32::MAX) && !size(8193, 1));
+        assert!(!allowed(json!({"setting": {"threads": 100_000}})) && !allowed(json!({"setting": {"samples": 0}})));
+        assert!(!allowed(json!({"zoom": 1e39})) && !allowed(json!({"fly": {"up": -1e300}})));
+        assert!(!allowed(json!({"setting": {"exposure": 1e30}})));
+    }
+}

@@ -1,0 +1,114 @@
+// A server, a browser, and what tests ask of them.
+
+import { spawn } from "node:child_process";
+import { strict as assert } from "node:assert";
+import { once } from "node:events";
+import { createInterface } from "node:readline";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const PATIENCE = 20000;
+
+export const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+/// Starts the program and reads where it serves.
+export async function startServer(program, words) {
+  const child = spawn(program, ["serve", ...words], { stdio: ["ignore", "pipe", "pipe"] });
+  const server = { child, log: "" };
+  child.stderr.on("data", (text) => (server.log += text));
+  const [line] = await once(createInterface(child.stdout), "line");
+  server.url = line.match(/http:\S+/)[0];
+  server.port = Number(new URL(server.url).port);
+  server.stop = async (signal = "SIGINT") => {
+    if (child.exitCode !== null) return child.exitCode;
+    child.kill(signal);
+    const [status] = await once(child, "exit");
+    return status;
+  };
+  return server;
+}
+
+export async function startBrowser(executablePath) {
+  const args = ["--no-sandbox", "--disable-dev-shm-usage", "--force-color-profile=srgb"];
+  return chromium.launch({ executablePath, args });
+}
+
+/// Waits for what a function says, and gives it back.
+export async function until(what, condition, patience = PATIENCE) {
+  const start = performance.now();
+  for (;;) {
+    const value = await condition();
+    if (value) return value;
+    assert(performance.now() - start < patience, `waited in vain: ${what}`);
+    await pause(15);
+  }
+}
+
+/// A page, with all that the server tells it, and all that goes wrong in it.
+export class Tab {
+  constructor(page, pictures) {
+    Object.assign(this, { page, pictures, status: null, wheel: null, faults: [], sent: [] });
+    page.on("pageerror", (error) => this.faults.push(`${error}`));
+    page.on("console", (message) => message.type() === "error" && !/ERR_CONNECTION|WebSocket connection/.test(message.text()) && this.faults.push(message.text()));
+    page.on("websocket", (socket) => {
+      socket.on("framereceived", ({ payload }) => typeof payload === "string" && Object.assign(this, JSON.parse(payload)));
+      socket.on("framesent", ({ payload }) => this.sent.push(payload));
+    });
+  }
+
+  static async open(context, url, pictures) {
+    const tab = new Tab(await context.newPage(), pictures);
+    await tab.page.goto(url);
+    await tab.frame();
+    return tab;
+  }
+
+  /// What the canvas says about the picture on it.
+  shown() {
+    return this.page.evaluate(() => {
+      const { revision, number, kind, latency } = document.getElementById("picture").dataset;
+      return { revision: Number(revision ?? -1), number: Number(number ?? -1), kind: Number(kind ?? -1), latency: Number(latency) };
+    });
+  }
+
+  frame(fits = ({ number }) => number >= 0) {
+    return until("a frame", async () => {
+      const shown = await this.shown();
+      return fits(shown) && shown;
+    });
+  }
+
+  told(what, fits, patience) {
+    return until(what, () => this.status && fits(this.status) && this.status, patience);
+  }
+
+  /// The exact picture of the newest revision.
+  async finished() {
+    await this.told("a finished picture", (status) => status.stage === "finished");
+    await this.frame(({ kind, revision }) => kind === 2 && revision === this.status.revision);
+  }
+
+  /// The picture in 16 by 16 fields, as numbers from 0 to 255.
+  fields() {
+    return this.page.evaluate(() => {
+      const small = new OffscreenCanvas(16, 16).getContext("2d");
+      small.drawImage(document.getElementById("picture"), 0, 0, 16, 16);
+      return [...small.getImageData(0, 0, 16, 16).data];
+    });
+  }
+
+  screenshot(name) {
+    return this.page.screenshot({ path: join(this.pictures, `${name}.png`) });
+  }
+
+  visible(selector) {
+    return this.page.locator(selector).isVisible();
+  }
+}
+
+/// How different two pictures are, 0 to 255.
+export function difference(one, other) {
+  return one.reduce((sum, value, index) => sum + Math.abs(value - other[index]), 0) / one.length;
+}
+
+export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
