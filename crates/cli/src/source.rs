@@ -33,8 +33,15 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
         }
         return Ok(Scene::load(path)?);
     }
-    if built_in_scenes().iter().any(|scene| scene.name == name) {
-        return Ok(Scene::built_in(name)?);
+    find(name)?;
+    Ok(Scene::built_in(name)?)
+}
+
+/// Whether there is a scene file or a built-in scene of this name, whatever is in it.
+pub fn find(name: &str) -> Result<(), Failure> {
+    let path = Path::new(name);
+    if path.exists() && !path.is_dir() || built_in_scenes().iter().any(|scene| scene.name == name) {
+        return Ok(());
     }
     if path.is_dir() {
         return Err(Failure::Wrong(format!("`{name}` is a folder, not a scene file")));
