@@ -8,6 +8,7 @@ use juggler_tracer::shape::{Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// The meshes that were loaded so far.
 #[derive(Clone, Debug, Default)]
@@ -22,9 +23,25 @@ struct Entry {
     digest: [u8; 32],
     /// A mesh ready to be placed, with all that is odd about it; or why there is none.
     mesh: Result<(Mesh, Vec<String>), String>,
+    /// How long the file was and when it was last written to, before it was read.
+    state: Option<(u64, SystemTime)>,
+}
+
+/// How long a file is and when it was last written to.
+fn state(path: &std::path::Path) -> Option<(u64, SystemTime)> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.len(), metadata.modified().ok()?))
 }
 
 impl Library {
+    /// A library that reads those files again that have changed.
+    pub fn renewed(&self) -> Self {
+        let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
+        let entries = self.entries();
+        let entries = entries.iter().filter(|(path, entry)| same(path, entry));
+        Self { entries: Arc::new(Mutex::new(entries.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect())) }
+    }
+
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
     pub fn digest(&self, path: &std::path::Path) -> [u8; 32] {
         self.get(path).digest
@@ -52,10 +69,10 @@ impl Library {
 
 impl Entry {
     fn load(path: &std::path::Path) -> Self {
-        let limits = Limits::default();
+        let (limits, state) = (Limits::default(), state(path));
         let bytes = match read(path, &limits) {
             Ok(bytes) => bytes,
-            Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)) },
+            Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)), state },
         };
         let (digest, imported) = rayon::join(|| blake3::hash(&bytes).into(), || parse(path, &bytes, &limits));
         // Building the hierarchy takes memory of its own.
@@ -68,7 +85,7 @@ impl Entry {
             warnings.extend(shape.warnings());
             Ok((shape, warnings))
         });
-        Self { digest, mesh }
+        Self { digest, mesh, state }
     }
 }
 
