@@ -5,6 +5,7 @@ use crate::keys::Command;
 use crate::overlay;
 use crate::saving::Saving;
 use crate::style;
+use crate::title::short;
 use eframe::egui::{
     self, Button, CollapsingHeader, ComboBox, Grid, ProgressBar, RichText, ScrollArea, Slider, TextEdit, Ui, vec2,
 };
@@ -170,7 +171,7 @@ impl Panel {
 fn head(ui: &mut Ui, around: &mut Around<'_>) {
     let status = around.status;
     ui.horizontal(|ui| {
-        let name = RichText::new(&status.scene).size(17.0);
+        let name = RichText::new(short(&status.scene)).size(17.0);
         let width = ui.available_width() - 84.0;
         ui.allocate_ui(vec2(width, 24.0), |ui| {
             ui.set_min_width(width);

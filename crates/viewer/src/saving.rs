@@ -1,5 +1,6 @@
 //! Saving a picture: on a thread of its own, since large pictures take a while to encode.
 
+use crate::title::short;
 use juggler_session::Session;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
@@ -18,7 +19,7 @@ impl Saving {
     /// Where the picture goes: by default into the current folder, named after the scene.
     pub fn path(&self, scene: &str) -> PathBuf {
         match self.text.trim() {
-            "" => PathBuf::from(format!("{}.png", if scene.is_empty() { "picture" } else { scene })),
+            "" => PathBuf::from(format!("{}.png", short(scene))),
             text => PathBuf::from(text),
         }
     }
@@ -61,7 +62,7 @@ mod tests {
     #[test]
     fn a_name_is_found() {
         let mut saving = Saving::default();
-        assert_eq!(saving.path("marbles"), PathBuf::from("marbles.png"));
+        assert_eq!(saving.path("folder/marbles.json"), PathBuf::from("marbles.png"));
         assert_eq!(saving.path(""), PathBuf::from("picture.png"));
         saving.text = " other.exr ".into();
         assert_eq!(saving.path("marbles"), PathBuf::from("other.exr"));

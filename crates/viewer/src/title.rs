@@ -1,11 +1,12 @@
 //! The window's title says how things stand, for people and for scripts.
 
 use juggler_session::{Stage, Status};
+use std::path::Path;
 
 /// `juggler - marbles - 12/64`; `loading`, `error` and `frame 7` where they fit, and while it moves how many frames of the
 /// picture are shown in a second.
 pub fn title(status: &Status, shown_per_second: f32) -> String {
-    let mut title = format!("juggler - {}", status.scene);
+    let mut title = format!("juggler - {}", short(&status.scene));
     let mut add = |text: String| {
         title.push_str(" - ");
         title.push_str(&text);
@@ -24,9 +25,19 @@ pub fn title(status: &Status, shown_per_second: f32) -> String {
     title
 }
 
+/// A scene's name without folder and ending.
+pub fn short(scene: &str) -> &str {
+    Path::new(scene).file_stem().and_then(|stem| stem.to_str()).unwrap_or("picture")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_short() {
+        assert_eq!([short("marbles"), short("a/b.scene.json"), short("")], ["marbles", "b.scene", "picture"]);
+    }
 
     #[test]
     fn says_how_things_stand() {
