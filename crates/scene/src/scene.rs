@@ -1,10 +1,12 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::compile::{Assembly, Compiled, Files, Library, Needs};
+use crate::compile::{self, Assembly, Compiled, Files, Library, Needs};
 use crate::description::{Animation, Backdrop, Description, Object};
-use crate::document::{Document, Node, Sources, Unreadable, put, read_text};
-use crate::fingerprint::Fingerprint;
+use crate::document::{Document, Node, Sources, Unreadable, put};
+use crate::fingerprint::{Fingerprint, mesh_files};
+use crate::named::Unknown;
 use crate::report::{Finding, Problems, plain_io};
+use crate::store::{Bundle, Store};
 use crate::validate::validate;
 use crate::{animate, schema};
 use juggler_tracer::camera::AnyCamera;
@@ -12,6 +14,7 @@ use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
 use juggler_tracer::texture::AnyTexture;
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -43,6 +46,9 @@ pub enum SceneError {
         /// What was probably meant.
         help: Option<String>,
     },
+    /// No file has this name, nor has a built-in scene.
+    #[error(transparent)]
+    Unknown(#[from] Unknown),
     /// The scene has mistakes.
     #[error("{0}")]
     Problems(Problems),
@@ -85,18 +91,30 @@ impl Scene {
 
     /// Reads a scene file and what it includes, at frame 0.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
-        Self::from_json(read(path)?, &path.to_string_lossy())
+        Self::read(path.as_ref(), Library::default())
+    }
+
+    /// Reads a scene from files in memory, as [`Scene::load`] does from those of the disk.
+    pub fn from_bundle(bundle: Bundle, name: &str) -> Result<Self, SceneError> {
+        Self::read(Path::new(name), Library::new(Store::Memory(bundle)))
+    }
+
+    fn read(path: &Path, library: Library) -> Result<Self, SceneError> {
+        let text = library.store().text(path).map_err(|unreadable| match unreadable {
+            Unreadable::Io(source) => SceneError::Read { path: path.into(), source },
+            Unreadable::NotText(message) => SceneError::NotText { path: path.into(), message },
+        })?;
+        Self::parse(text, &path.to_string_lossy(), library)
     }
 
     /// Reads a scene from a text. `name` is what messages call it; files that the scene names are looked for in
     /// the folder of `name`.
     pub fn from_json(text: impl Into<String>, name: &str) -> Result<Self, SceneError> {
-        Self::from_text(text.into(), name, Library::default())
+        Self::parse(text.into(), name, Library::default())
     }
 
-    fn from_text(text: String, name: &str, library: Library) -> Result<Self, SceneError> {
-        let (document, findings) = Document::read(name, text)
+    fn parse(text: String, name: &str, library: Library) -> Result<Self, SceneError> {
+        let (document, findings) = Document::read(name, text, library.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, None)))?;
         Self::resolve(Arc::new(document), findings, 0.0, library)
     }
@@ -112,8 +130,7 @@ impl Scene {
 
     /// Reads the file again, and of its meshes those that have changed.
     pub fn reload(&self, path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
-        Self::from_text(read(path)?, &path.to_string_lossy(), self.library.renewed())
+        Self::read(path.as_ref(), self.library.renewed())
     }
 
     /// The same scene with another value at a place, which is a JSON pointer such as `/materials/red/phong/diffuse`;
@@ -171,6 +188,41 @@ impl Scene {
         Ok(assembly.compile(self.description.render.clone(), problems))
     }
 
+    /// Compiles the scene with the world of an earlier compilation, which must be this scene's too:
+    /// [`Scene::has_world_of`].
+    pub fn compile_with(&self, earlier: &Compiled) -> Result<Compiled, SceneError> {
+        let (cameras, findings) = compile::look_at(&self.description, &earlier.world);
+        let findings = joined(self.own_findings(), findings);
+        let broken = findings.iter().any(Finding::is_error);
+        let warnings = self.report(findings);
+        if broken {
+            return Err(SceneError::Problems(warnings));
+        }
+        let (world, settings) = (Arc::clone(&earlier.world), self.description.render.clone());
+        Ok(Compiled { world, cameras, settings, warnings })
+    }
+
+    /// Whether the same stands in both, however it is looked at. Mesh files are compared by their contents.
+    pub fn has_world_of(&self, other: &Self) -> bool {
+        let (a, b) = (&self.description, &other.description);
+        let digests = |scene: &Self| -> Vec<(PathBuf, [u8; 32])> {
+            scene.mesh_files().into_iter().map(|file| (file.clone(), scene.library.digest(&file))).collect()
+        };
+        (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
+            && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
+            && digests(self) == digests(other)
+    }
+
+    fn mesh_files(&self) -> BTreeSet<PathBuf> {
+        mesh_files(&self.description, &self.files())
+    }
+
+    /// The files that it was read from, and those of its meshes.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let texts = self.origin.iter().flat_map(|origin| origin.document.sources.names());
+        texts.map(PathBuf::from).chain(self.mesh_files()).collect()
+    }
+
     /// What building the world will need memory for; no file is read for it.
     pub fn needs(&self) -> Needs {
         Needs::of(&self.description, self.files())
@@ -214,13 +266,6 @@ impl Scene {
             None => Problems::new(findings, Sources::default(), None),
         }
     }
-}
-
-fn read(path: &Path) -> Result<String, SceneError> {
-    read_text(path).map_err(|unreadable| match unreadable {
-        Unreadable::Io(source) => SceneError::Read { path: path.into(), source },
-        Unreadable::NotText(message) => SceneError::NotText { path: path.into(), message },
-    })
 }
 
 /// Findings of an early step with those of a later one. What the early step found wrong, the later one need not

@@ -36,7 +36,10 @@ const SMALLEST: [f32; 2] = [480.0, 320.0];
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
-    /// The system gives none: no display, no permission, no OpenGL.
+    /// Nothing to show it on.
+    #[error("no window can be opened: there is no display (neither DISPLAY nor WAYLAND_DISPLAY leads to one)")]
+    NoDisplay,
+    /// The system gives none: no permission, no OpenGL.
     #[error("no window can be opened: {0}")]
     NoWindow(String),
 }
@@ -58,5 +61,8 @@ pub fn run(session: Session, options: Options) -> Result<(), ViewerError> {
         .with_min_inner_size(SMALLEST);
     let native = eframe::NativeOptions { viewport, persist_window: false, ..eframe::NativeOptions::default() };
     eframe::run_native("juggler", native, Box::new(|context| Ok(Box::new(app::Viewer::new(session, options, context)))))
-        .map_err(|error| ViewerError::NoWindow(error.to_string()))
+        .map_err(|error| match error {
+            eframe::Error::WinitEventLoop(_) => ViewerError::NoDisplay,
+            other => ViewerError::NoWindow(other.to_string()),
+        })
 }

@@ -172,7 +172,7 @@ fn head(ui: &mut Ui, around: &mut Around<'_>) {
     let status = around.status;
     ui.horizontal(|ui| {
         let name = RichText::new(short(&status.scene)).size(17.0);
-        let width = ui.available_width() - 84.0;
+        let width = ui.available_width() - 70.0;
         ui.allocate_ui(vec2(width, 24.0), |ui| {
             ui.set_min_width(width);
             ui.add(egui::Label::new(name).truncate());

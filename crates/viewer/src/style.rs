@@ -34,7 +34,7 @@ pub fn apply(context: &Context) {
         ]
         .into();
         style.interaction.selectable_labels = false;
-        style.spacing.item_spacing = vec2(8.0, 6.0);
+        style.spacing.item_spacing = vec2(8.0, 4.0);
         style.spacing.button_padding = vec2(8.0, 3.0);
         style.spacing.slider_width = 118.0;
         style.spacing.slider_rail_height = 4.0;

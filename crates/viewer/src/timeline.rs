@@ -15,13 +15,13 @@ pub fn show(ui: &mut Ui, status: &Status, edits: &mut Vec<Edit>) {
     let frame = egui::Frame::new().fill(style::SURFACE).inner_margin(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("time").frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
-            let symbol = if status.playing { "⏸" } else { "▶" };
-            if ui.add(Button::new(symbol).min_size(egui::vec2(30.0, 22.0))).clicked() {
+            let word = if status.playing { "Stop" } else { "Play" };
+            if ui.add(Button::new(word).min_size(egui::vec2(48.0, 22.0))).clicked() {
                 edits.push(Edit::Play(!status.playing));
             }
             let seconds = if status.frame_rate > 0.0 { status.frame / status.frame_rate } else { 0.0 };
             let words = format!("frame {:>6.2} of {}   {seconds:.2} s", status.frame, status.frames);
-            let width = 200.0;
+            let width = 250.0;
             ui.spacing_mut().slider_width = (ui.available_width() - width).max(80.0);
             let mut frame = status.frame;
             let slider = Slider::new(&mut frame, 0.0..=f64::from(status.frames)).show_value(false);

@@ -1,9 +1,10 @@
 //! Mesh files: each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
 
 use crate::document::{Node, Sources};
-use crate::import::{Fault, ImportError, Limits, parse, read};
+use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
+use crate::store::Store;
 use juggler_tracer::shape::{Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,6 +14,7 @@ use std::time::SystemTime;
 /// The meshes that were loaded so far.
 #[derive(Clone, Debug, Default)]
 pub struct Library {
+    store: Store,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
 }
 
@@ -34,12 +36,23 @@ fn state(path: &std::path::Path) -> Option<(u64, SystemTime)> {
 }
 
 impl Library {
+    /// Of files that come from there.
+    pub fn new(store: Store) -> Self {
+        Self { store, ..Self::default() }
+    }
+
+    /// Where files come from.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
     /// A library that reads those files again that have changed.
     pub fn renewed(&self) -> Self {
         let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
         let entries = self.entries();
-        let entries = entries.iter().filter(|(path, entry)| same(path, entry));
-        Self { entries: Arc::new(Mutex::new(entries.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect())) }
+        let kept = entries.iter().filter(|(path, entry)| same(path, entry));
+        let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)) }
     }
 
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
@@ -54,9 +67,9 @@ impl Library {
             return Arc::clone(known);
         }
         // The same file by another name.
-        let file = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let file = self.store.true_name(path);
         let known = self.entries().get(&file).filter(|entry| entry.mesh.is_ok()).map(Arc::clone);
-        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path)));
+        let entry = known.unwrap_or_else(|| Arc::new(Entry::load(path, &self.store)));
         let mut entries = self.entries();
         let first = Arc::clone(entries.entry(file).or_insert(entry));
         Arc::clone(entries.entry(path.to_path_buf()).or_insert(first))
@@ -68,9 +81,9 @@ impl Library {
 }
 
 impl Entry {
-    fn load(path: &std::path::Path) -> Self {
+    fn load(path: &std::path::Path, store: &Store) -> Self {
         let (limits, state) = (Limits::default(), state(path));
-        let bytes = match read(path, &limits) {
+        let bytes = match store.mesh(path, &limits) {
             Ok(bytes) => bytes,
             Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)), state },
         };

@@ -7,9 +7,10 @@
 use super::guard::Refused;
 use super::source::{FileId, Place, Sources};
 use super::tree::{Member, Node, Value};
-use super::{Unreadable, parse, read_text};
+use super::{Unreadable, parse};
 use crate::report::{Finding, plain_io};
 use crate::schema::Schema;
+use crate::store::Store;
 use crate::suggest::meant_or_all;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,7 +25,8 @@ pub const MAX_FILES: usize = 1000;
 const MAX_CHAIN: usize = 32;
 
 /// Reads a scene's files.
-pub struct Reader {
+pub struct Reader<'s> {
+    store: &'s Store,
     sources: Sources,
     findings: Vec<Finding>,
     /// Every file that came in, in its one true name.
@@ -34,11 +36,12 @@ pub struct Reader {
     complete: bool,
 }
 
-impl Reader {
-    /// For the scene in this file.
-    pub fn new(main: &Path) -> Self {
-        let main = true_name(main);
+impl<'s> Reader<'s> {
+    /// For the scene in this file; the others come from `store`.
+    pub fn new(main: &Path, store: &'s Store) -> Self {
+        let main = store.true_name(main);
         Self {
+            store,
             sources: Sources::default(),
             findings: Vec::new(),
             seen: vec![main.clone()],
@@ -110,7 +113,7 @@ impl Reader {
     fn included(&mut self, (name, place): (String, Option<Place>), by: FileId) -> Option<Node> {
         let folder = self.sources.get(by).map(|source| source.folder.clone()).unwrap_or_default();
         let path = folder.join(&name);
-        let identity = true_name(&path);
+        let identity = self.store.true_name(&path);
         let problem = if let Some(at) = self.open.iter().position(|open| *open == identity) {
             let chain: Vec<_> = self.open.iter().skip(at).chain([&identity]).map(|p| file_name(p)).collect();
             Some(format!("files include each other in a circle: {}", chain.join(" → ")))
@@ -123,7 +126,7 @@ impl Reader {
         } else {
             None
         };
-        let text = match problem.map_or_else(|| read_text(&path).map_err(|why| explain(&path, why)), Err) {
+        let text = match problem.map_or_else(|| self.store.text(&path).map_err(|why| explain(&path, why)), Err) {
             Ok(text) => text,
             Err(message) => {
                 self.findings.push(Finding::error(message).on(place));
@@ -217,11 +220,6 @@ fn explain(path: &Path, why: Unreadable) -> String {
         Unreadable::Io(error) => format!("cannot read `{shown}`: {}", plain_io(&error)),
         Unreadable::NotText(message) => format!("cannot include `{shown}`: {message}"),
     }
-}
-
-/// The name that tells whether two files are one.
-fn true_name(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
 }
 
 fn file_name(path: &Path) -> String {

@@ -16,6 +16,7 @@ pub(crate) use parse::parse;
 pub(crate) use put::put;
 
 use crate::report::Finding;
+use crate::store::Store;
 use std::path::Path;
 use std::{fs, io};
 
@@ -29,12 +30,12 @@ pub struct Document {
 }
 
 impl Document {
-    /// Reads a scene from a text and the files it includes; `name` is what messages call it, and the files it
-    /// names are relative to that name's folder.
+    /// Reads a scene from a text and the files it includes, which come from `store`; `name` is what messages call it,
+    /// and the files it names are relative to that name's folder.
     ///
     /// Mistakes that leave everything in its place come with the document.
-    pub fn read(name: &str, text: String) -> Result<(Self, Vec<Finding>), (Sources, Vec<Finding>)> {
-        let mut reader = include::Reader::new(Path::new(name));
+    pub fn read(name: &str, text: String, store: &Store) -> Result<(Self, Vec<Finding>), (Sources, Vec<Finding>)> {
+        let mut reader = include::Reader::new(Path::new(name), store);
         let tree = reader.main(name, text);
         let (sources, findings, complete) = reader.finish();
         match tree {

@@ -20,7 +20,7 @@ mod wavefront;
 mod tests;
 
 pub use control::{Control, Rays};
-pub use progressive::{Stop, expose, is_finished, most_runs};
+pub use progressive::{Exposure, Hand, Stop, expose, is_finished, most_runs};
 pub use schedule::{BAND_PIXELS, Schedule, Scheduler, Stopped, band_bytes, render};
 
 /// What a thread, a pass or a machine is given.

@@ -33,15 +33,48 @@ pub enum Stop {
 /// [`Control::finish`]: then what is begun is done, and the rest left. When cancelled, what is begun is lost. `film` may
 /// be read meanwhile.
 pub fn expose(job: &Job, film: &Film, stop: Stop, control: &Control) -> Result<(), Stopped> {
-    let rounds = Rounds::new(film, stop);
+    let exposure = Exposure::new(job, film, stop);
     rayon::broadcast(|_| {
-        let mut engine = Engine::new(job);
-        while let Some(round) = rounds.next(control) {
-            round.render(film, &mut engine, control);
-            rounds.done(&round);
-        }
+        let mut hand = exposure.hand();
+        while hand.step(u32::MAX, control).is_some() {}
     });
     if control.is_cancelled() { Err(Stopped) } else { Ok(()) }
+}
+
+/// A film that is being exposed by as many [`Hand`]s as are wanted; [`expose`] has one on each thread. One alone never
+/// waits, so it can work where there are no threads, a step at a time.
+pub struct Exposure<'j> {
+    job: &'j Job<'j>,
+    rounds: Rounds<'j>,
+}
+
+impl<'j> Exposure<'j> {
+    /// Goes on with what the film has.
+    pub fn new(job: &'j Job<'j>, film: &'j Film, stop: Stop) -> Self {
+        Self { job, rounds: Rounds::new(film, stop) }
+    }
+
+    /// Somebody who exposes it, on one thread.
+    pub fn hand(&self) -> Hand<'_> {
+        Hand { rounds: &self.rounds, engine: Engine::new(self.job) }
+    }
+}
+
+/// Exposes a film, step by step.
+pub struct Hand<'e> {
+    rounds: &'e Rounds<'e>,
+    engine: Engine<'e>,
+}
+
+impl Hand<'_> {
+    /// Exposes the next tile, by no more than `most` samples a pixel, and returns its place. `None` when all tiles have
+    /// enough or `control` says that it is to end. Waits only for other hands.
+    pub fn step(&mut self, most: u32, control: &Control) -> Option<usize> {
+        let round = self.rounds.next(most, control)?;
+        round.render(self.rounds.film, &mut self.engine, control);
+        self.rounds.done(&round);
+        Some(round.place)
+    }
 }
 
 /// Whether every tile of the film has enough.
@@ -165,8 +198,8 @@ impl<'f> Rounds<'f> {
         matches!(self.stop, Stop::Noise(_)) || !sample.is_multiple_of(BLOCK)
     }
 
-    /// Waits for a round; `None` when there is none to come.
-    fn next(&self, control: &Control) -> Option<Round> {
+    /// Waits for a round, of which no more than `most` samples are taken now; `None` when there is none to come.
+    fn next(&self, most: u32, control: &Control) -> Option<Round> {
         let mut state = self.lock();
         loop {
             if control.is_finishing() {
@@ -174,12 +207,13 @@ impl<'f> Rounds<'f> {
             }
             if let Some(Reverse((start, place, end))) = state.waiting.pop() {
                 state.begun += 1;
-                if !self.follows(end)
-                    && let Some(next) = Round::after(self.film, self.stop, place, end)
-                {
-                    state.waiting.push(next.entry());
+                let now = end.min(start.saturating_add(most.max(1)));
+                let rest = Round { place, samples: now..end };
+                if !self.follows(now) {
+                    let next = if now < end { Some(rest) } else { Round::after(self.film, self.stop, place, end) };
+                    state.waiting.extend(next.map(|next| next.entry()));
                 }
-                return Some(Round { place, samples: start..end });
+                return Some(Round { place, samples: start..now });
             }
             if state.begun == 0 {
                 return None;
@@ -285,6 +319,27 @@ mod tests {
             some.tiles().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
             assert!(!is_finished(&film, Stop::Samples));
             assert_eq!(means(&exposed(job, film, Stop::Samples)), means(&straight));
+        });
+    }
+
+    #[test]
+    fn steps_of_any_length_are_one_straight_run() {
+        with_job(1, |job| {
+            for stop in [Stop::Samples, Stop::Evenly, Stop::Noise(0.008)] {
+                let (film, control) = (whole(0..300), Control::default());
+                // Others end and begin anew, as they do who have something else to do between.
+                for most in [1, 7, 16, 40, 300].into_iter().cycle() {
+                    let exposure = Exposure::new(job, &film, stop);
+                    let mut hand = exposure.hand();
+                    let steps = std::iter::repeat_with(|| hand.step(most, &control)).take(20);
+                    if steps.flatten().count() < 20 {
+                        break;
+                    }
+                }
+                let straight = exposed(job, whole(0..300), stop);
+                assert_eq!(film.counts(), straight.counts(), "{stop:?}");
+                assert_eq!(means(&film), means(&straight), "{stop:?}");
+            }
         });
     }
 
