@@ -202,6 +202,10 @@ impl eframe::App for Viewer {
             .frame(egui::Frame::new().fill(style::BACKGROUND))
             .show(ui, |ui| self.picture(ui, &status, &mut edits));
         self.overlays(&context, &status, &mut edits);
+        if !commands.is_empty() {
+            // What they change is drawn in the next pass.
+            context.request_repaint();
+        }
         for command in commands {
             self.obey(&context, command, &status, &mut edits);
         }

@@ -45,9 +45,10 @@ impl Chooser {
         self.thumbnails.make(context);
         let room = context.content_rect().shrink(32.0);
         let columns = ((room.width() - 40.0) / (CARD.x + 10.0)).floor().clamp(1.0, 5.0) as usize;
-        let frame = style::floating().inner_margin(16);
+        let frame = style::floating().fill(style::SURFACE).inner_margin(16);
         let modal = egui::Modal::new(Id::unique("scenes")).frame(frame).show(context, |ui| {
             ui.set_width(columns as f32 * (CARD.x + 10.0));
+            ui.set_height(room.height() - 40.0);
             let typed = self.field(ui);
             ui.add_space(8.0);
             let height = room.height() - 90.0;

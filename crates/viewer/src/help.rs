@@ -2,18 +2,20 @@
 
 use crate::keys::{Binding, GROUPS, Group, With};
 use crate::style;
-use eframe::egui::{self, Context, Grid, Id, RichText, Ui};
+use eframe::egui::{self, Context, Grid, Id, Key, RichText, Ui};
 
 /// Shows them; whether they are to be closed.
 pub fn show(context: &Context) -> bool {
-    let modal = egui::Modal::new(Id::unique("help")).frame(style::floating().inner_margin(18)).show(context, |ui| {
-        ui.spacing_mut().item_spacing = egui::vec2(14.0, 4.0);
-        ui.horizontal_top(|ui| {
-            ui.vertical(|ui| groups(ui, &GROUPS[..1]));
-            ui.add_space(24.0);
-            ui.vertical(|ui| groups(ui, &GROUPS[1..]));
+    let modal = egui::Modal::new(Id::unique("help"))
+        .frame(style::floating().fill(style::SURFACE).inner_margin(18))
+        .show(context, |ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(14.0, 4.0);
+            ui.horizontal_top(|ui| {
+                ui.vertical(|ui| groups(ui, &GROUPS[..1]));
+                ui.add_space(24.0);
+                ui.vertical(|ui| groups(ui, &GROUPS[1..]));
+            });
         });
-    });
     modal.should_close()
 }
 
@@ -45,11 +47,22 @@ fn rows(group: &Group) -> Vec<(String, &'static str)> {
     rows
 }
 
-/// `W ⏶`, `Ctrl S`.
+/// `W ↑`, `Ctrl S`.
 fn written(binding: &Binding) -> String {
-    let keys: Vec<&str> = binding.keys.iter().map(|key| key.symbol_or_name()).collect();
+    let keys: Vec<&str> = binding.keys.iter().map(|key| name(*key)).collect();
     let control = if binding.with == With::Control { "Ctrl " } else { "" };
     format!("{control}{}", keys.join(" "))
+}
+
+/// Arrows as the letters at hand have them.
+fn name(key: Key) -> &'static str {
+    match key {
+        Key::ArrowUp => "↑",
+        Key::ArrowDown => "↓",
+        Key::ArrowLeft => "←",
+        Key::ArrowRight => "→",
+        other => other.symbol_or_name(),
+    }
 }
 
 #[cfg(test)]
@@ -71,10 +84,7 @@ mod tests {
     fn the_documentation_has_them_all() {
         let page = include_str!("../../../docs/viewer.md");
         for (keys, says) in GROUPS.iter().flat_map(rows) {
-            let row = format!(
-                "| {} | {says} |",
-                keys.replace('⏶', "↑").replace('⏷', "↓").replace('⏴', "←").replace('⏵', "→")
-            );
+            let row = format!("| {keys} | {says} |");
             assert!(page.contains(&row), "docs/viewer.md lacks the row\n{row}");
         }
     }

@@ -92,6 +92,9 @@ pub struct Group {
 /// The key that turns a drag into the choice of a region.
 pub const REGION: Key = Key::R;
 
+/// What the digits are for.
+const CHANNELS: &str = "what is shown: the picture, albedo, normals ...";
+
 const fn hold(keys: &'static [Key], motion: Motion, says: &'static str) -> Binding {
     Binding { keys, with: With::Any, action: Action::Hold(motion), says }
 }
@@ -129,8 +132,8 @@ pub const GROUPS: &[Group] = &[
             hold(&[Key::K], Motion::PitchDown, "pitch"),
             hold(&[Key::U], Motion::RollLeft, "roll"),
             hold(&[Key::O], Motion::RollRight, "roll"),
-            press(&[Key::Plus, Key::Equals], Command::Faster, "faster"),
-            press(&[Key::Minus], Command::Slower, "slower"),
+            press(&[Key::Plus, Key::Equals], Command::Faster, "speed"),
+            press(&[Key::Minus], Command::Slower, "speed"),
             press(&[Key::M], Command::OtherMode, "fly or orbit"),
             press(&[Key::F], Command::FrameAll, "everything into view"),
             press(&[Key::V], Command::NextCamera, "next camera of the scene"),
@@ -150,14 +153,14 @@ pub const GROUPS: &[Group] = &[
             press(&[Key::P], Command::Probe, "probe the pixel: follow, pin, off"),
             press(&[Key::OpenBracket], Command::Darker, "exposure"),
             press(&[Key::CloseBracket], Command::Brighter, "exposure"),
-            press(&[Key::Num1], Command::Channel(0), "picture"),
-            press(&[Key::Num2], Command::Channel(1), "albedo"),
-            press(&[Key::Num3], Command::Channel(2), "normals"),
-            press(&[Key::Num4], Command::Channel(3), "depth"),
-            press(&[Key::Num5], Command::Channel(4), "objects"),
-            press(&[Key::Num6], Command::Channel(5), "materials"),
-            press(&[Key::Num7], Command::Channel(6), "samples"),
-            press(&[Key::Num8], Command::Channel(7), "noise"),
+            press(&[Key::Num1], Command::Channel(0), CHANNELS),
+            press(&[Key::Num2], Command::Channel(1), CHANNELS),
+            press(&[Key::Num3], Command::Channel(2), CHANNELS),
+            press(&[Key::Num4], Command::Channel(3), CHANNELS),
+            press(&[Key::Num5], Command::Channel(4), CHANNELS),
+            press(&[Key::Num6], Command::Channel(5), CHANNELS),
+            press(&[Key::Num7], Command::Channel(6), CHANNELS),
+            press(&[Key::Num8], Command::Channel(7), CHANNELS),
             control(&[Key::S], Command::Save, "save the picture"),
         ],
     },
