@@ -64,11 +64,12 @@ press() { xdotool key "$1"; sleep 0.15; }
 settle() { sleep 0.3; until_true finished; sleep 0.3; }
 
 find_window() { window=$(xdotool search --pid "$viewer" --name juggler 2>/dev/null | tail -1); [ -n "$window" ]; }
+has_focus() { xdotool windowfocus "$window" 2>/dev/null && [ "$(xdotool getwindowfocus 2>/dev/null)" = "$window" ]; }
 open() {
   "$juggler" view "$@" 2>"$work/stderr" &
   viewer=$!
   until_true find_window
-  xdotool windowfocus "$window" 2>/dev/null || true
+  until_true has_focus
   sleep 0.5
 }
 # The window was asked to close: the program ends, and says nothing.

@@ -3,6 +3,7 @@
 use crate::Options;
 use crate::chooser::Chooser;
 use crate::keys::{self, Command};
+use crate::lens::Lens;
 use crate::overlay;
 use crate::panel::{Around, Panel, next_name};
 use crate::picture::{Placement, Screen};
@@ -86,7 +87,7 @@ impl Viewer {
         }
         let (held, fast, seconds) = context.input(|input| (keys::held(input), input.modifiers.shift, input.stable_dt));
         if !held.is_empty() {
-            edits.extend(self.pilot.controls.keys(&held, fast, seconds, status.extent));
+            edits.extend(self.pilot.controls.keys(&held, fast, seconds, Lens::of(status).reach));
             context.request_repaint_after(STEP);
         }
         commands

@@ -4,8 +4,8 @@ use crate::keys::Motion;
 use crate::lens::Lens;
 use juggler_session::{Edit, Fly, Orbit};
 
-/// How many of the scene's sizes the camera flies in a second at speed 1.
-const SIZES_PER_SECOND: f32 = 0.25;
+/// How much of its reach the camera flies in a second at speed 1.
+const REACH_PER_SECOND: f32 = 0.25;
 /// How fast keys turn it.
 const DEGREES_PER_SECOND: f32 = 60.0;
 /// What Shift does to both.
@@ -46,7 +46,7 @@ impl Mode {
 pub struct Controls {
     /// What a drag does.
     pub mode: Mode,
-    /// Speed of the keys, 1 being a quarter of the scene's size a second.
+    /// Speed of the keys, 1 being a quarter of the lens's reach a second.
     pub speed: f32,
 }
 
@@ -65,10 +65,10 @@ impl Controls {
         self.speed = (self.speed * SPEED_STEP.powi(steps)).clamp(*Self::SPEEDS.start(), *Self::SPEEDS.end());
     }
 
-    /// Keys that are held for some seconds, in a scene of this extent.
-    pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, extent: f32) -> Option<Edit> {
+    /// Keys that are held for some seconds.
+    pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, reach: f32) -> Option<Edit> {
         let seconds = seconds.min(LONGEST_STEP) * if fast { FAST } else { 1.0 };
-        let (step, turn) = (extent * SIZES_PER_SECOND * self.speed * seconds, DEGREES_PER_SECOND * seconds);
+        let (step, turn) = (reach * REACH_PER_SECOND * self.speed * seconds, DEGREES_PER_SECOND * seconds);
         let mut fly = Fly::default();
         for motion in held {
             match motion {
@@ -128,7 +128,7 @@ impl Controls {
 mod tests {
     use super::*;
 
-    const LENS: Lens = Lens { degrees_per_pixel: 0.1, units_per_pixel: 0.02 };
+    const LENS: Lens = Lens { degrees_per_pixel: 0.1, units_per_pixel: 0.02, reach: 10.0 };
 
     fn flown(edit: Option<Edit>) -> Fly {
         match edit {
@@ -141,7 +141,7 @@ mod tests {
     fn speed_follows_the_scene_and_the_time() {
         let controls = Controls::default();
         let slow = flown(controls.keys(&[Motion::Forward], false, 0.02, 10.0));
-        assert_eq!(slow, Fly { forward: 0.02 * 10.0 * SIZES_PER_SECOND, ..Fly::default() });
+        assert_eq!(slow, Fly { forward: 0.02 * 10.0 * REACH_PER_SECOND, ..Fly::default() });
         let large = flown(controls.keys(&[Motion::Forward], false, 0.02, 1e6));
         assert!((large.forward / slow.forward - 1e5).abs() < 1.0);
         let fast = flown(controls.keys(&[Motion::Forward], true, 0.02, 10.0));

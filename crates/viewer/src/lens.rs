@@ -11,12 +11,22 @@ pub struct Lens {
     pub degrees_per_pixel: f32,
     /// What it covers at the point of interest, scene units.
     pub units_per_pixel: f32,
+    /// How far one goes at speed 1 in some seconds, scene units: the size of the scene, or a few times the distance of the
+    /// point of interest where that is less, so that a far horizon makes nobody too fast.
+    pub reach: f32,
 }
+
+/// How many distances of the point of interest are a reach.
+const DISTANCES: f32 = 4.0;
 
 impl Lens {
     /// Of the camera that a status tells of.
     pub fn of(status: &Status) -> Self {
-        Self::seen(status).unwrap_or(Self { degrees_per_pixel: 0.1, units_per_pixel: status.extent / 1000.0 })
+        Self::seen(status).unwrap_or(Self {
+            degrees_per_pixel: 0.1,
+            units_per_pixel: status.extent / 1000.0,
+            reach: status.extent,
+        })
     }
 
     fn seen(status: &Status) -> Option<Self> {
@@ -28,6 +38,7 @@ impl Lens {
         let interest = Vec3::from(status.interest);
         let depth = (interest - here.origin).dot(here.direction).max(status.extent * 1e-3);
         let [at, next] = [here, below].map(|ray| ray.origin + ray.direction * depth);
+        let extent = status.extent.max(f32::MIN_POSITIVE);
         let lens = Self {
             degrees_per_pixel: here
                 .direction
@@ -36,6 +47,7 @@ impl Lens {
                 .atan2(here.direction.dot(below.direction))
                 .to_degrees(),
             units_per_pixel: at.distance(next),
+            reach: (here.origin.distance(interest) * DISTANCES).clamp(extent * 0.01, extent),
         };
         (lens.degrees_per_pixel.is_finite() && lens.units_per_pixel.is_finite()).then_some(lens)
     }
@@ -59,9 +71,18 @@ mod tests {
     }
 
     #[test]
+    fn a_far_horizon_makes_nobody_too_fast() {
+        let camera = json!({"perspective": {"eye": [0, 0, 5]}});
+        let lens = Lens::of(&Status { extent: 1e4, ..status(camera) });
+        assert_eq!(lens.reach, 100.0);
+        let lens = Lens::of(&Status { extent: 60.0, ..status(json!({"perspective": {"eye": [0, 0, 5]}})) });
+        assert!((lens.reach - 20.0).abs() < 1e-3, "{lens:?}");
+    }
+
+    #[test]
     fn of_parallel_rays() {
         let lens = Lens::of(&status(json!({"orthographic": {"eye": [0, 0, 5], "height": 20}})));
-        assert_eq!(lens.degrees_per_pixel, 0.0);
+        assert_eq!((lens.degrees_per_pixel, lens.reach), (0.0, 10.0));
         assert!((lens.units_per_pixel - 0.2).abs() < 1e-4, "{lens:?}");
     }
 
