@@ -30,6 +30,15 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     Ok(Scene::named(name)?)
 }
 
+/// Whether there is a scene file or a built-in scene of this name, whatever is in it.
+pub fn find(name: &str) -> Result<(), Failure> {
+    let path = Path::new(name);
+    if path.exists() && !path.is_dir() {
+        return Ok(());
+    }
+    Scene::named(name).map(drop).map_err(Failure::from)
+}
+
 fn check_memory(needed: u64, name: &str, most: Option<u64>) -> Result<(), Failure> {
     match most {
         Some(most) if needed > most => Err(Failure::Wrong(format!(

@@ -26,6 +26,9 @@ const LICENCES: &[&str] = &[
     "MIT-0",
     "IJG",
     "Apache-2.0 WITH LLVM-exception",
+    // Of typefaces: they may be part of any program, but not be sold alone.
+    "OFL-1.1",
+    "Ubuntu-font-1.0",
 ];
 
 fn root() -> PathBuf {

@@ -14,6 +14,8 @@ mod scenes;
 mod schema;
 #[cfg(feature = "serve")]
 mod serve;
+#[cfg(feature = "view")]
+mod view;
 
 /// Every command.
 #[derive(Debug, Subcommand)]
@@ -21,6 +23,9 @@ pub enum Command {
     /// Render a picture, or the pictures of an animation
     #[command(after_help = render::EXAMPLES)]
     Render(Box<crate::args::RenderArgs>),
+    /// Walk around in a scene, in a window
+    #[cfg(feature = "view")]
+    View(view::View),
     /// Say all that is wrong with a scene, without rendering it
     Check(check::Check),
     /// Say what is in a scene, or what a picture or a part of one says about itself
@@ -47,6 +52,8 @@ impl Command {
     pub fn run(self) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(*args),
+            #[cfg(feature = "view")]
+            Self::View(view) => view.run(),
             Self::Check(check) => check.run(),
             Self::Info(info) => info.run(),
             Self::Merge(merge) => merge.run(),

@@ -1,0 +1,83 @@
+//! What is said over the picture: mistakes, and in a line how things stand when the panel is folded.
+
+use crate::style;
+use eframe::egui::{self, Align2, Context, Id, Rect, RichText, ScrollArea, vec2};
+use juggler_session::{Stage, Status};
+
+/// Shows a mistake over the last good picture, in the words of `juggler check`.
+pub fn mistake(context: &Context, area: Rect, text: &str) {
+    egui::Area::new(Id::unique("mistake"))
+        .order(egui::Order::Foreground)
+        .pivot(Align2::LEFT_BOTTOM)
+        .fixed_pos(area.left_bottom() + vec2(16.0, -16.0))
+        .show(context, |ui| {
+            style::floating().stroke(egui::Stroke::new(1.0, style::WRONG)).show(ui, |ui| {
+                ui.set_max_width(area.width() - 56.0);
+                ScrollArea::both().max_height(area.height() * 0.7).auto_shrink(true).show(ui, |ui| {
+                    let words = RichText::new(text.trim_end()).monospace().color(style::TEXT);
+                    ui.add(egui::Label::new(words).extend().selectable(true));
+                });
+            });
+        });
+}
+
+/// One line at the lower left.
+pub fn line(context: &Context, area: Rect, status: &Status) {
+    egui::Area::new(Id::unique("line"))
+        .interactable(false)
+        .pivot(Align2::LEFT_BOTTOM)
+        .fixed_pos(area.left_bottom() + vec2(12.0, -12.0))
+        .show(context, |ui| {
+            style::floating().inner_margin(egui::Margin::symmetric(10, 5)).show(ui, |ui| {
+                ui.label(RichText::new(summary(status)).color(style::QUIET));
+            });
+        });
+}
+
+/// `12 of 64 samples · noise 1.2 % · 12.3 Mrays/s`.
+pub fn summary(status: &Status) -> String {
+    let mut parts = Vec::new();
+    match status.stage {
+        Stage::Loading => parts.push("loading".to_owned()),
+        Stage::Moving => parts.push(moving(status)),
+        Stage::Refining => parts.push(format!("{} of {} samples", status.samples.floor(), status.samples_wanted)),
+        Stage::Finished => parts.push(format!("{} samples, finished", status.samples.floor())),
+    }
+    if let Some(noise) = status.noise {
+        parts.push(format!("noise {:.1} %", noise * 100.0));
+    }
+    if status.rays_per_second > 0.0 && status.stage != Stage::Finished {
+        parts.push(rays(status.rays_per_second));
+    }
+    parts.join(" · ")
+}
+
+fn moving(status: &Status) -> String {
+    let fps = format!("{:.0} frames/s", status.frames_per_second);
+    if status.coarseness > 1 { format!("{fps}, 1/{} size", status.coarseness) } else { fps }
+}
+
+/// `12.3 Mrays/s`.
+pub fn rays(per_second: f32) -> String {
+    if per_second >= 1e6 {
+        format!("{:.1} Mrays/s", per_second / 1e6)
+    } else {
+        format!("{:.0} krays/s", per_second / 1e3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_up() {
+        let mut status = Status { stage: Stage::Moving, frames_per_second: 51.7, coarseness: 2, ..Status::default() };
+        assert_eq!(summary(&status), "52 frames/s, 1/2 size");
+        (status.stage, status.samples, status.samples_wanted) = (Stage::Refining, 12.5, 64);
+        (status.noise, status.rays_per_second) = (Some(0.0123), 12.34e6);
+        assert_eq!(summary(&status), "12 of 64 samples · noise 1.2 % · 12.3 Mrays/s");
+        status.stage = Stage::Finished;
+        assert_eq!(summary(&status), "12 samples, finished · noise 1.2 %");
+    }
+}

@@ -1,0 +1,305 @@
+//! The panel at the right: everything that can be set, with how things stand above it.
+
+use crate::controls::{Controls, Mode};
+use crate::keys::Command;
+use crate::overlay;
+use crate::saving::Saving;
+use crate::style;
+use crate::title::short;
+use eframe::egui::{
+    self, Button, CollapsingHeader, ComboBox, Grid, ProgressBar, RichText, ScrollArea, Slider, TextEdit, Ui, vec2,
+};
+use juggler::imaging::AnyCurve;
+use juggler::names;
+use juggler::tracer::integrator::AnyIntegrator;
+use juggler::tracer::sampler::AnySampler;
+use juggler_session::{Channel, Edit, Setting, Stage, Status};
+use std::collections::BTreeMap;
+
+/// Width of the panel.
+const WIDTH: f32 = 316.0;
+/// Sizes of the picture that are offered.
+const SIZES: [[u32; 2]; 6] = [[320, 240], [640, 480], [1280, 720], [1920, 1080], [2560, 1440], [3840, 2160]];
+/// The schedulers, and what they do.
+const SCHEDULERS: [(&str, &str); 3] = [
+    ("work-stealing", "idle threads steal tiles from busy ones"),
+    ("row-queue", "a shared counter hands out rows"),
+    ("static-rows", "each thread has its own block of rows"),
+];
+
+/// What the panel keeps between two looks.
+pub struct Panel {
+    integrators: Vec<String>,
+    samplers: Vec<String>,
+    curves: Vec<String>,
+    cores: usize,
+    bookmark: String,
+    /// The last frame rate under each scheduler.
+    rates: BTreeMap<String, f32>,
+}
+
+impl Default for Panel {
+    fn default() -> Self {
+        Self {
+            integrators: names::<AnyIntegrator>(),
+            samplers: names::<AnySampler>(),
+            curves: names::<AnyCurve>(),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            bookmark: String::new(),
+            rates: BTreeMap::new(),
+        }
+    }
+}
+
+/// What the panel reads, and what it changes in the window.
+pub struct Around<'a> {
+    /// How things stand.
+    pub status: &'a Status,
+    /// How the camera is steered.
+    pub controls: &'a mut Controls,
+    /// Where the picture is saved.
+    pub saving: &'a mut Saving,
+    /// Pixels of the screen that the picture may have.
+    pub window: [u32; 2],
+    /// Receives what the session is asked for.
+    pub edits: &'a mut Vec<Edit>,
+    /// Receives what the window is asked for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+impl Panel {
+    /// Shows it.
+    pub fn show(&mut self, ui: &mut Ui, around: &mut Around<'_>) {
+        if around.status.stage == Stage::Moving && around.status.frames_per_second > 0.0 {
+            self.rates.insert(around.status.scheduler.clone(), around.status.frames_per_second);
+        }
+        let frame = egui::Frame::new().fill(style::SURFACE).inner_margin(egui::Margin::symmetric(14, 12));
+        egui::Panel::right("panel").frame(frame).resizable(false).exact_size(WIDTH).show(ui, |ui| {
+            head(ui, around);
+            ui.separator();
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                section(ui, "Camera", |ui| self.camera(ui, around));
+                section(ui, "Picture", |ui| self.picture(ui, around));
+                section(ui, "Colour", |ui| self.colour(ui, around));
+                section(ui, "Show", |ui| channels(ui, around));
+                section(ui, "Threads", |ui| self.threads(ui, around));
+                section(ui, "Save", |ui| save(ui, around));
+            });
+        });
+    }
+
+    fn camera(&mut self, ui: &mut Ui, around: &mut Around<'_>) {
+        row(ui, "drag", |ui| {
+            for (mode, name) in [(Mode::Fly, "fly"), (Mode::Orbit, "orbit")] {
+                ui.selectable_value(&mut around.controls.mode, mode, name);
+            }
+        });
+        row(ui, "speed", |ui| {
+            ui.add(Slider::new(&mut around.controls.speed, Controls::SPEEDS).logarithmic(true).max_decimals(2));
+        });
+        let cameras = &around.status.cameras;
+        if !cameras.is_empty() {
+            let chosen = row(ui, "go to", |ui| choice(ui, "camera", "", cameras));
+            around.edits.extend(chosen.map(Edit::Camera));
+        }
+        row(ui, "keep as", |ui| {
+            let hint = next_name(cameras);
+            ui.add(TextEdit::singleline(&mut self.bookmark).hint_text(&hint).desired_width(118.0));
+            if ui.button("Keep").on_hover_text("a bookmark of this camera, in the scene file").clicked() {
+                let name = std::mem::take(&mut self.bookmark);
+                around.edits.push(Edit::Bookmark(if name.trim().is_empty() { hint } else { name }));
+            }
+        });
+        row(ui, "", |ui| {
+            button(ui, around, "Frame all", Command::FrameAll);
+            button(ui, around, "Undo all", Command::Reset);
+        });
+    }
+
+    fn picture(&self, ui: &mut Ui, around: &mut Around<'_>) {
+        let status = around.status;
+        let mut set = |setting| around.edits.push(Edit::Setting(setting));
+        if let Some(size) = row(ui, "size", |ui| sizes(ui, status.size, around.window)) {
+            set(Setting::Size(size));
+        }
+        let integrator = row(ui, "integrator", |ui| choice(ui, "integrator", &status.integrator, &self.integrators));
+        integrator.map(Setting::Integrator).map(&mut set);
+        let sampler = row(ui, "sampler", |ui| choice(ui, "sampler", &status.sampler, &self.samplers));
+        sampler.map(Setting::Sampler).map(&mut set);
+        let samples = row(ui, "samples", |ui| number(ui, status.samples_wanted, 1..=16384, true));
+        samples.map(Setting::Samples).map(&mut set);
+        if let Some(depth) = status.max_depth {
+            let depth = row(ui, "max depth", |ui| number(ui, depth, 0..=64, false));
+            depth.map(Setting::MaxDepth).map(&mut set);
+        }
+        if status.region.is_some() {
+            row(ui, "region", |ui| button(ui, around, "Whole picture", Command::WholePicture));
+        }
+    }
+
+    fn colour(&self, ui: &mut Ui, around: &mut Around<'_>) {
+        let mut stops = around.status.exposure;
+        let slider = Slider::new(&mut stops, -8.0..=8.0).fixed_decimals(2);
+        if row(ui, "exposure", |ui| ui.add(slider).changed()) {
+            around.edits.push(Edit::Setting(Setting::Exposure(stops)));
+        }
+        let curve = row(ui, "tone curve", |ui| choice(ui, "curve", &around.status.tone, &self.curves));
+        around.edits.extend(curve.map(|curve| Edit::Setting(Setting::Tone(curve))));
+    }
+
+    fn threads(&self, ui: &mut Ui, around: &mut Around<'_>) {
+        let status = around.status;
+        let most = self.cores.max(status.threads) as u32;
+        if let Some(threads) = row(ui, "threads", |ui| number(ui, status.threads as u32, 1..=most, false)) {
+            around.edits.push(Edit::Setting(Setting::Threads(threads as usize)));
+        }
+        for (name, does) in SCHEDULERS {
+            ui.horizontal(|ui| {
+                let chosen = status.scheduler == name;
+                if ui.add(Button::selectable(chosen, name).min_size(vec2(118.0, 22.0))).on_hover_text(does).clicked() {
+                    around.edits.push(Edit::Setting(Setting::Scheduler(name.into())));
+                }
+                if let Some(rate) = self.rates.get(name) {
+                    ui.label(RichText::new(format!("{rate:.1} frames/s")).color(style::QUIET));
+                }
+            });
+        }
+    }
+}
+
+/// The scene, and how far its picture is.
+fn head(ui: &mut Ui, around: &mut Around<'_>) {
+    let status = around.status;
+    ui.horizontal(|ui| {
+        let name = RichText::new(short(&status.scene)).size(17.0);
+        let width = ui.available_width() - 70.0;
+        ui.allocate_ui(vec2(width, 24.0), |ui| {
+            ui.set_min_width(width);
+            ui.add(egui::Label::new(name).truncate());
+        });
+        button(ui, around, "Scenes", Command::Scenes);
+    });
+    let share = if status.samples_wanted == 0 { 0.0 } else { status.samples / status.samples_wanted as f32 };
+    let color = if status.stage == Stage::Finished { style::QUIET } else { style::ACCENT };
+    ui.add(ProgressBar::new(share.clamp(0.0, 1.0)).desired_height(4.0).fill(color));
+    ui.label(RichText::new(overlay::summary(status)).color(style::QUIET));
+}
+
+fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    let head = RichText::new(name).color(style::ACCENT);
+    CollapsingHeader::new(head).id_salt(name).default_open(true).show_unindented(ui, |ui| {
+        contents(ui);
+        ui.add_space(6.0);
+    });
+}
+
+/// A name, and beside it what it names.
+fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        let (place, _) = ui.allocate_exact_size(vec2(76.0, 22.0), egui::Sense::hover());
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        ui.painter().text(place.left_center(), egui::Align2::LEFT_CENTER, name, font, style::QUIET);
+        contents(ui)
+    })
+    .inner
+}
+
+fn button(ui: &mut Ui, around: &mut Around<'_>, words: &str, command: Command) {
+    if ui.button(words).clicked() {
+        around.commands.push(command);
+    }
+}
+
+/// One of several names; the one that was chosen, when another was.
+fn choice(ui: &mut Ui, id: &str, current: &str, names: &[String]) -> Option<String> {
+    let mut chosen = None;
+    ComboBox::from_id_salt(id).width(190.0).selected_text(current).show_ui(ui, |ui| {
+        for name in names {
+            if ui.selectable_label(name == current, name).clicked() && name != current {
+                chosen = Some(name.clone());
+            }
+        }
+    });
+    chosen
+}
+
+fn sizes(ui: &mut Ui, current: [u32; 2], window: [u32; 2]) -> Option<[u32; 2]> {
+    let mut chosen = None;
+    let words = |[width, height]: [u32; 2]| format!("{width} × {height}");
+    ComboBox::from_id_salt("size").width(190.0).selected_text(words(current)).show_ui(ui, |ui| {
+        let of_window = format!("{} (window)", words(window));
+        for (size, words) in SIZES.iter().map(|size| (*size, words(*size))).chain([(window, of_window)]) {
+            if ui.selectable_label(size == current, words).clicked() {
+                chosen = Some(size);
+            }
+        }
+    });
+    chosen
+}
+
+fn number(ui: &mut Ui, current: u32, range: std::ops::RangeInclusive<u32>, logarithmic: bool) -> Option<u32> {
+    let mut value = current;
+    let slider = Slider::new(&mut value, range).logarithmic(logarithmic).update_while_editing(false);
+    (ui.add(slider).changed() && value != current).then_some(value)
+}
+
+fn channels(ui: &mut Ui, around: &mut Around<'_>) {
+    Grid::new("channels").num_columns(3).spacing(vec2(4.0, 4.0)).show(ui, |ui| {
+        for (place, channel) in Channel::ALL.into_iter().enumerate() {
+            let words = Button::selectable(channel == around.status.channel, channel_name(channel));
+            let hint = format!("key {}", place + 1);
+            if ui.add(words.min_size(vec2(90.0, 22.0))).on_hover_text(hint).clicked() {
+                around.edits.push(Edit::Show(channel));
+            }
+            if place % 3 == 2 {
+                ui.end_row();
+            }
+        }
+    });
+}
+
+fn channel_name(channel: Channel) -> &'static str {
+    match channel {
+        Channel::Color => "picture",
+        Channel::Albedo => "albedo",
+        Channel::Normals => "normals",
+        Channel::Depth => "depth",
+        Channel::Objects => "objects",
+        Channel::Materials => "materials",
+        Channel::Samples => "samples",
+        Channel::Noise => "noise",
+    }
+}
+
+fn save(ui: &mut Ui, around: &mut Around<'_>) {
+    row(ui, "file", |ui| {
+        let hint = around.saving.path(&around.status.scene).display().to_string();
+        ui.add(TextEdit::singleline(&mut around.saving.text).hint_text(hint).desired_width(134.0));
+        let busy = around.saving.is_busy();
+        if ui.add_enabled(!busy, Button::new("Save")).clicked() {
+            around.commands.push(Command::Save);
+        }
+    });
+    match &around.saving.said {
+        Some(Ok(file)) => drop(ui.label(RichText::new(format!("saved {file}")).color(style::QUIET))),
+        Some(Err(why)) => drop(ui.label(RichText::new(why).color(style::WRONG))),
+        None => {}
+    }
+}
+
+/// A name for a camera that no other has.
+pub fn next_name(cameras: &[String]) -> String {
+    let free = |number: &usize| !cameras.contains(&format!("view-{number}"));
+    format!("view-{}", (1..=cameras.len() + 1).find(free).unwrap_or(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bookmarks_have_names_of_their_own() {
+        assert_eq!(next_name(&[]), "view-1");
+        assert_eq!(next_name(&["view-1".into(), "top".into(), "view-3".into()]), "view-2");
+    }
+}

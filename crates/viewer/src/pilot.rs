@@ -1,0 +1,85 @@
+//! The pointer over the picture: drags, clicks and the wheel.
+
+use crate::controls::Controls;
+use crate::keys::REGION;
+use crate::lens::Lens;
+use crate::picture::{Placement, View};
+use crate::region::{self, Draft};
+use eframe::egui::{PointerButton, Rect, Response, Ui};
+use juggler_session::{Edit, Status};
+
+/// What the hand does.
+#[derive(Default)]
+pub struct Pilot {
+    /// How the camera is steered.
+    pub controls: Controls,
+    /// How large the picture is shown.
+    pub view: View,
+    /// A region that is being drawn up.
+    pub draft: Draft,
+}
+
+impl Pilot {
+    /// Takes what happened over the picture, which lies somewhere in `area`.
+    pub fn steer(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        placement: &Placement,
+        status: &Status,
+        edits: &mut Vec<Edit>,
+    ) {
+        self.drags(ui, response, placement, status, edits);
+        self.wheel(ui, response, placement, edits);
+        let place = response.interact_pointer_pos().and_then(|at| placement.film(at));
+        if response.double_clicked_by(PointerButton::Primary) {
+            edits.extend(place.map(|place| Edit::Frame(Some(place))));
+        } else if response.clicked_by(PointerButton::Primary) {
+            edits.extend(place.map(Edit::Focus));
+        }
+    }
+
+    fn drags(&mut self, ui: &Ui, response: &Response, placement: &Placement, status: &Status, edits: &mut Vec<Edit>) {
+        let (region, shift) = ui.input(|input| (input.key_down(REGION), input.modifiers.shift));
+        let main = response.dragged_by(PointerButton::Primary);
+        if response.drag_started_by(PointerButton::Primary) && region {
+            self.draft.from = ui.input(|input| input.pointer.press_origin());
+        }
+        if self.draft.from.is_some() {
+            self.draw_up(response, placement, edits);
+            return;
+        }
+        let delta = response.drag_delta();
+        let pixels = placement.pixels_per_point();
+        if response.dragged_by(PointerButton::Secondary) {
+            self.view.offset += delta;
+        } else if (main && shift) || response.dragged_by(PointerButton::Middle) {
+            edits.extend(self.controls.slide(delta.into(), pixels, &Lens::of(status)));
+        } else if main {
+            edits.extend(self.controls.drag(delta.into(), pixels, &Lens::of(status)));
+        }
+    }
+
+    fn draw_up(&mut self, response: &Response, placement: &Placement, edits: &mut Vec<Edit>) {
+        if !response.drag_stopped() {
+            return;
+        }
+        let corners = self.draft.from.take().zip(response.interact_pointer_pos());
+        let region = corners.and_then(|(from, to)| region::between(placement.nearest(from), placement.nearest(to)));
+        edits.extend(region.map(|region| Edit::Region(Some(region))));
+    }
+
+    fn wheel(&mut self, ui: &Ui, response: &Response, placement: &Placement, edits: &mut Vec<Edit>) {
+        let Some(at) = response.hover_pos() else { return };
+        let (points, zoom) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        if zoom != 1.0 {
+            self.view.magnify(zoom, at, area(response), placement);
+        } else {
+            edits.extend(self.controls.wheel(points));
+        }
+    }
+}
+
+fn area(response: &Response) -> Rect {
+    response.rect
+}

@@ -1,0 +1,186 @@
+#!/usr/bin/env bash
+# Drives the window of `juggler view` as a person would, on a display in memory: keys, drags, the wheel, fields, a file that is
+# edited under it. Whether a thing happened is seen in the window's title and in screenshots.
+#   tests/viewer/test.sh PATH/TO/juggler [FOLDER FOR THE SCREENSHOTS]
+# Needs Xvfb, xdotool, ImageMagick's import, and what a window needs; on Debian
+#   apt-get install xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+juggler=$(realpath "$1")
+work=$(mktemp -d)
+shots=${2:-$work}
+mkdir -p "$shots"
+for tool in Xvfb xdotool import; do
+  command -v "$tool" >/dev/null || { echo "error: $tool is not installed (apt-get install xvfb xdotool imagemagick)" >&2; exit 1; }
+done
+
+viewer= server=
+finish() {
+  local status=$?
+  trap - EXIT
+  for process in $viewer $server; do kill "$process" 2>/dev/null || true; done
+  if [ "$status" = 0 ]; then rm -rf "$work"; else echo "FAILED; what is left is in $work and $shots" >&2; fi
+  exit "$status"
+}
+trap finish EXIT
+trap 'exit 130' INT TERM
+
+say() { printf '%4d s  %s\n' "$SECONDS" "$*"; }
+fail() { echo "error: $*" >&2; exit 1; }
+
+# Waits for at most 60 seconds.
+until_true() {
+  local start=$SECONDS
+  until "$@"; do
+    [ $((SECONDS - start)) -lt 60 ] || fail "in vain: $* (the title is '$(title)')"
+    sleep 0.05
+  done
+}
+
+title() { xdotool getwindowname "$window" 2>/dev/null || true; }
+titled() { [[ $(title) == $1 ]]; }
+finished() { titled "juggler - scene - frame * - 16/16"; }
+
+# Screenshots: the whole window, and of that the picture alone (the panel is 316 wide, the strip of time 34 high).
+shoot() { import -window "$window" "PNG24:$shots/$1.png"; }
+shoot_picture() { import -window "$window" -crop 900x700+0+0 +repage "PNG24:$shots/$1.png"; }
+rmse() { "$juggler" compare "$shots/$1.png" "$shots/$2.png" --tolerance 0 | awk '/^RMSE/ { print $2 }' || true; }
+differ() { awk -v e="$(rmse "$1" "$2")" 'BEGIN { exit !(e > 0.01) }' || fail "$1 and $2 look the same (RMSE $(rmse "$1" "$2"))"; }
+same() { "$juggler" compare "$shots/$1.png" "$shots/$2.png" >/dev/null || fail "$1 and $2 differ (RMSE $(rmse "$1" "$2"))"; }
+
+point() { xdotool mousemove --window "$window" "$1" "$2"; sleep 0.2; }
+# From, to, button.
+drag() {
+  point "$1" "$2"
+  xdotool mousedown "$5"; sleep 0.1
+  for step in 1 2 3 4; do
+    xdotool mousemove --window "$window" $(($1 + ($3 - $1) * step / 4)) $(($2 + ($4 - $2) * step / 4)); sleep 0.05
+  done
+  xdotool mouseup "$5"; sleep 0.1
+}
+hold() { xdotool keydown "$1"; sleep 0.4; xdotool keyup "$1"; }
+press() { xdotool key "$1"; sleep 0.15; }
+# After something that changes the picture: waits until it is whole again.
+settle() { sleep 0.3; until_true finished; sleep 0.3; }
+
+find_window() { window=$(xdotool search --pid "$viewer" --name juggler 2>/dev/null | tail -1); [ -n "$window" ]; }
+has_focus() { xdotool windowfocus "$window" 2>/dev/null && [ "$(xdotool getwindowfocus 2>/dev/null)" = "$window" ]; }
+open() {
+  "$juggler" view "$@" 2>"$work/stderr" &
+  viewer=$!
+  until_true find_window
+  until_true has_focus
+  sleep 0.5
+}
+# The window was asked to close: the program ends, and says nothing.
+ended() {
+  local status=0
+  wait "$viewer" || status=$?
+  viewer=
+  [ "$status" = 0 ] || fail "the viewer ended with status $status: $(cat "$work/stderr")"
+  [ ! -s "$work/stderr" ] || fail "the viewer wrote: $(cat "$work/stderr")"
+}
+
+window=
+status=0
+env -u DISPLAY -u WAYLAND_DISPLAY -u WAYLAND_SOCKET "$juggler" view one-sphere 2>"$work/none" || status=$?
+[ "$status" = 3 ] && grep -q '^error: no window' "$work/none" && ! grep -q panicked "$work/none" ||
+  fail "without a display: status $status, $(cat "$work/none")"
+say "without a display: an error and status 3"
+
+mkfifo "$work/display"
+Xvfb -displayfd 7 -screen 0 1280x800x24 -nolisten tcp 7>"$work/display" 2>/dev/null &
+server=$!
+read -r number < "$work/display"
+export DISPLAY=:$number
+
+cd "$work"
+cp "$here/scene.json" scene.json
+open scene.json --threads 2
+until_true finished
+sleep 0.5
+shoot first
+shoot_picture start
+say "the first picture: $(title)"
+
+drag 300 300 420 340 1; settle; shoot_picture looked; differ start looked
+press Home; settle; point 5 5; shoot_picture back; same start back
+say "a drag looks around, Home goes back"
+for key in w a e j i u; do
+  hold "$key"; settle; shoot_picture "key-$key"; differ start "key-$key"
+  press Home; settle
+done
+say "keys move and turn"
+point 450 350; xdotool click 4; xdotool click 4; settle; shoot_picture zoomed; differ start zoomed
+press Home; settle
+say "the wheel zooms"
+xdotool keydown shift; drag 300 300 400 300 1; xdotool keyup shift; settle; shoot_picture slid; differ start slid
+press Home; settle
+drag 300 300 400 300 2; settle; shoot_picture slid-middle; differ start slid-middle
+press Home; settle
+press m; drag 300 300 420 340 1; settle; shoot_picture orbited; differ start orbited; differ looked orbited
+press m; press Home; settle
+say "Shift and the middle button slide, M orbits"
+point 480 400; xdotool click --repeat 2 --delay 60 1; settle; shoot_picture framed; differ start framed
+press Home; settle; point 5 5; shoot_picture back; same start back
+say "a double click brings an object into view"
+
+point 480 380; press p; sleep 0.3; shoot_picture probed; differ start probed
+press Escape; point 5 5; sleep 0.3; shoot_picture back; same start back
+press 3; settle; shoot_picture normals; differ start normals
+press 1; settle; shoot_picture back; same start back
+press bracketright; settle; shoot_picture brighter; differ start brighter
+press bracketleft; settle
+say "the probe, normals, exposure"
+
+xdotool keydown r; drag 300 300 500 450 1; xdotool keyup r; sleep 1; shoot_picture region; differ start region
+press t; settle; point 5 5; shoot_picture back; same start back
+say "a region is drawn up and given up"
+
+drag 74 783 420 783 1; settle; shoot_picture later; differ start later
+titled "juggler - scene - frame 0 - *" && fail "the slider did not move time: $(title)"
+press Home; settle
+press period; until_true titled "juggler - scene - frame 1 - *"
+press comma; until_true titled "juggler - scene - frame 0 - *"; settle
+press space; until_true titled "juggler - scene - frame [5-9]* - *"; press space; settle
+press Home; settle; point 5 5; shoot_picture back; same start back
+say "the slider, single frames, play and stop"
+
+sed 's/"sphere", "material": "red"/"spere", "material": "red"/' "$here/scene.json" > next && mv next scene.json
+until_true titled "* - error"; sleep 0.4; shoot mistake; shoot_picture mistake-picture; differ start mistake-picture
+sed 's/#c02020/#20a040/' "$here/scene.json" > next && mv next scene.json
+until_true finished; settle; shoot_picture green; differ start green; differ mistake-picture green
+cp "$here/scene.json" scene.json; sleep 0.5; settle; shoot_picture back; same start back
+say "a mistake in the file is shown over the picture until it is mended; edits show"
+
+press question; sleep 0.3; shoot help; shoot_picture help-picture; differ start help-picture
+press Escape; sleep 0.3; shoot_picture back; same start back
+press Tab; sleep 0.5; shoot folded; press Tab; sleep 0.5; shoot_picture back; same start back
+say "the keys under ?, the panel folds"
+
+press ctrl+s; until_true test -s scene.png
+"$juggler" render scene.json -o straight.png -q
+"$juggler" compare scene.png straight.png >/dev/null || fail "the saved picture is not that of juggler render"
+say "the saved picture is that of juggler render"
+
+ticks() { awk '{ print $14 + $15 }' "/proc/$viewer/stat"; }
+sleep 1; before=$(ticks); sleep 4; used=$(($(ticks) - before))
+[ "$used" -le 4 ] || fail "idle, but 4 seconds took $used ticks of the processor"
+say "idle: $used ticks of the processor in 4 seconds"
+
+xdotool windowsize "$window" 700 500; sleep 1; shoot small
+geometry=$(xdotool getwindowgeometry "$window" | grep Geometry)
+[[ $geometry == *700x500 ]] || fail "the window did not shrink: $geometry"
+xdotool windowsize "$window" 1280 800; sleep 1; point 5 5; shoot_picture back; same start back
+say "the window shrinks and grows"
+
+press g; sleep 3; shoot chooser
+xdotool type --delay 40 pool; sleep 0.5; shoot chooser-pool; press Return
+until_true titled "juggler - scalablitz-pool - [0-9]*/*"; sleep 1; shoot_picture pool; differ start pool
+say "another scene: $(title)"
+
+press ctrl+q; ended
+say "Ctrl+Q: status 0"
+open; until_true titled "juggler - juggler - *"; sleep 2; shoot choice
+xdotool windowquit "$window"; ended
+say "without a scene there is a choice; the window closes with status 0"
