@@ -5,9 +5,14 @@ const MOST = 1 << 30;
 
 /** All files of a drop, folders included, as { name, file }: names have the folders that were dropped before them. */
 export async function dropped(transfer) {
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter(Boolean);
   const files = [];
-  for (const entry of entries) await walk(entry, files);
+  // The items themselves are gone as soon as anything is waited for.
+  const entries = [...transfer.items].filter(({ kind }) => kind === "file").map((item) => {
+    const entry = item.webkitGetAsEntry?.();
+    if (!entry) files.push(...chosen([item.getAsFile()]));
+    return entry;
+  });
+  for (const entry of entries.filter(Boolean)) await walk(entry, files);
   return files;
 }
 
