@@ -32,18 +32,19 @@ export class Program {
   constructor(path) {
     this.path = path;
     this.folder = mkdtempSync(join(tmpdir(), "juggler-web-"));
+    this.picture = join(this.folder, "picture.png");
   }
 
   run(...words) {
     return spawnSync(this.path, words, { encoding: "utf8", env: { ...process.env, NO_COLOR: "1" } });
   }
 
-  /** The hash of a picture's film, and its PNG file. */
+  /** Makes a picture; the hash of its film. */
   render(scene, ...words) {
-    const [file, stats] = [join(this.folder, "picture.png"), join(this.folder, "stats.json")];
-    const { status, stderr } = this.run("render", scene, "-o", file, "--stats", stats, ...words);
+    const stats = join(this.folder, "stats.json");
+    const { status, stderr } = this.run("render", scene, "-o", this.picture, "--stats", stats, ...words);
     assert.equal(status, 0, stderr);
-    return { hash: JSON.parse(readFileSync(stats)).film.hash, png: readFileSync(file) };
+    return JSON.parse(readFileSync(stats)).film;
   }
 }
 

@@ -184,6 +184,7 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
             (None, seconds, _) => Limit::Time { seconds: seconds.unwrap_or(0.0) },
         },
         integrator: args.integrator.clone(),
+        sampler: None,
         max_depth: args.max_depth,
         camera: args.camera.clone(),
         seed: args.seed,

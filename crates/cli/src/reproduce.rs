@@ -14,7 +14,8 @@ pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 
 /// The shortest command line that renders this picture again.
 pub fn command(plan: &Plan, shot: &Shot) -> String {
-    let Settings { size, samples, limit, integrator, max_depth, camera, seed, crop, curve, exposure_stops } =
+    // No flag sets a sampler.
+    let Settings { size, samples, limit, integrator, sampler: _, max_depth, camera, seed, crop, curve, exposure_stops } =
         &plan.settings;
     let Options { png_16_bit, jpeg_quality, exr_depth, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));

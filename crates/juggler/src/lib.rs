@@ -35,6 +35,7 @@ pub use juggler_imaging as imaging;
 pub use juggler_math as math;
 pub use juggler_scene as scene;
 pub use juggler_tracer as tracer;
+pub use kinds::{by_name, check_name, names};
 pub use part::Origin;
-pub use picture::{Outcome, Picture, render, render_to_file};
+pub use picture::{Outcome, Picture, View, render, render_to_file};
 pub use settings::{Limit, Settings};

@@ -3,18 +3,21 @@
 use crate::{Error, Limit, Settings};
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
-use juggler_scene::{Compiled, Fingerprint, Scene};
-use juggler_tracer::camera::Projection;
+use juggler_scene::description::Render;
+use juggler_scene::{Compiled, Fingerprint, Scene, SceneError};
+use juggler_tracer::camera::{AnyCamera, Perspective, Projection};
 use juggler_tracer::film::{Digest, Filter, Rect, Summary};
 use juggler_tracer::render::{self, BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
 use juggler_tracer::world::{SimdLevel, World};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The program as files name it.
 pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"));
 
 /// A scene compiled for one picture: every number is settled.
+#[derive(Clone)]
 pub struct Picture {
     compiled: Compiled,
     projection: Projection,
@@ -22,7 +25,20 @@ pub struct Picture {
     tone: Tone,
     limit: Limit,
     fingerprint: Fingerprint,
+    /// The scene's part of it.
+    of_scene: Fingerprint,
     band_pixels: u64,
+}
+
+/// From where a world is looked at, and how: all that can change without building it anew.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// From where.
+    pub camera: AnyCamera,
+    /// Size, samples, integrator and the like.
+    pub render: Render,
+    /// From linear light to what files keep.
+    pub tone: Tone,
 }
 
 /// What is to be known about a render besides its pixels.
@@ -48,14 +64,64 @@ impl Picture {
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
         let (tone, limit, fingerprint) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
-        let mut picture = Self { projection, region, tone, limit, fingerprint, compiled, band_pixels: BAND_PIXELS };
+        let of_scene = fingerprint.clone();
+        let mut picture =
+            Self { projection, region, tone, limit, fingerprint, of_scene, compiled, band_pixels: BAND_PIXELS };
         picture.complete_fingerprint();
         Ok(picture)
     }
 
+    /// How its world is looked at.
+    pub fn view(&self) -> View {
+        let camera = self.compiled.cameras.first().map(|(_, camera)| camera.clone());
+        View {
+            camera: camera.unwrap_or_else(|| Perspective::default().into()),
+            render: self.compiled.settings.clone(),
+            tone: self.tone.clone(),
+        }
+    }
+
+    /// The same world looked at otherwise: all of it, until its samples are there. The camera's name stays.
+    pub fn seen(&self, view: View) -> Result<Self, Error> {
+        let mut scene = Scene::new();
+        let description = &mut scene.description;
+        (description.render, description.tone) = (view.render.clone(), view.tone.clone());
+        description.render.camera = None;
+        description.camera = Some(view.camera.clone());
+        let problems = scene.check();
+        if problems.errors() > 0 {
+            return Err(SceneError::Problems(problems).into());
+        }
+        let [width, height] = view.render.size;
+        let projected = view.camera.project(UVec2::new(width, height));
+        let mut picture = self.clone();
+        picture.projection = projected.map_err(|error| Error::Settings(error.to_string()))?;
+        picture.region = Rect { x: 0, y: 0, width, height };
+        (picture.tone, picture.limit) = (view.tone, Limit::Samples);
+        picture.of_scene = self.of_scene.seen_as(&scene.fingerprint());
+        picture.fingerprint = picture.of_scene.clone();
+        picture.compiled.settings = view.render;
+        if let Some((_, camera)) = picture.compiled.cameras.first_mut() {
+            *camera = view.camera;
+        }
+        picture.complete_fingerprint();
+        Ok(picture)
+    }
+
+    /// Whether all samples of both are the same, so that a film of one can go on as one of the other.
+    pub fn shares_samples(&self, other: &Self) -> bool {
+        let (a, b) = (self.job(), other.job());
+        Arc::ptr_eq(self.world(), other.world())
+            && self.region == other.region
+            && (a.camera, a.pattern, a.seed) == (b.camera, b.pattern, b.seed)
+            && a.filter == b.filter
+            && self.compiled.settings.integrator == other.compiled.settings.integrator
+            && (a.samples == 1) == (b.samples == 1)
+    }
+
     /// The same picture for another vector unit than the best of this machine: for tests and measurements.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
-        self.compiled.world = self.compiled.world.with_simd_level(level);
+        self.compiled.world = Arc::new(Arc::unwrap_or_clone(self.compiled.world).with_simd_level(level));
         self
     }
 
@@ -83,7 +149,7 @@ impl Picture {
     }
 
     /// What can be seen.
-    pub fn world(&self) -> &World {
+    pub fn world(&self) -> &Arc<World> {
         &self.compiled.world
     }
 

@@ -2,8 +2,10 @@
 
 use crate::Error;
 use crate::kinds::{by_name, check_name};
+use juggler_imaging::Tone;
 use juggler_scene::Scene;
-use juggler_scene::description::CameraName;
+use juggler_scene::description::{CameraName, Render};
+use juggler_scene::kind::name_of;
 use juggler_tracer::film::{BLOCK, Rect};
 use juggler_tracer::integrator::AnyIntegrator;
 use juggler_tracer::render::Stop;
@@ -66,6 +68,8 @@ pub struct Settings {
     pub limit: Limit,
     /// Name of an integrator. The scene's own numbers are kept when it is the scene's own integrator.
     pub integrator: Option<String>,
+    /// Name of a sampler; the scene's own numbers are kept likewise.
+    pub sampler: Option<String>,
     /// How often a path may be mirrored or refracted.
     pub max_depth: Option<u32>,
     /// Name of one of the scene's cameras.
@@ -83,7 +87,6 @@ pub struct Settings {
 impl Settings {
     /// The scene as it is wished for.
     pub fn apply(&self, scene: &Scene) -> Result<Scene, Error> {
-        let (size, samples) = (self.size_of(scene), self.samples_of(scene));
         let mut scene = scene.clone();
         let description = &mut scene.description;
         if let Some(name) = &self.camera {
@@ -91,20 +94,29 @@ impl Settings {
             check_name("camera", name, single.chain(description.cameras.keys().map(String::as_str)))?;
             description.render.camera = Some(CameraName(name.clone()));
         }
-        let render = &mut description.render;
-        (render.size, render.samples) = (size, samples);
+        self.apply_to(&mut description.render, &mut description.tone)?;
+        Ok(scene)
+    }
+
+    /// The same for a scene's settings and tone alone; cameras are left.
+    pub fn apply_to(&self, render: &mut Render, tone: &mut Tone) -> Result<(), Error> {
+        render.size = self.size.unwrap_or(render.size);
+        render.samples = self.samples.unwrap_or(self.limit.most(render.samples));
         render.seed = self.seed.unwrap_or(render.seed);
         if let Some(name) = self.integrator.as_deref().filter(|name| *name != render.integrator.name()) {
             render.integrator = by_name("integrator", name)?;
+        }
+        if let Some(name) = self.sampler.as_deref().filter(|name| *name != name_of(&render.sampler)) {
+            render.sampler = by_name("sampler", name)?;
         }
         if let Some(depth) = self.max_depth {
             limit_depth(&mut render.integrator, depth)?;
         }
         if let Some(name) = &self.curve {
-            description.tone.curve = by_name("tone curve", name)?;
+            tone.curve = by_name("tone curve", name)?;
         }
-        description.tone.exposure_stops = self.exposure_stops.unwrap_or(description.tone.exposure_stops);
-        Ok(scene)
+        tone.exposure_stops = self.exposure_stops.unwrap_or(tone.exposure_stops);
+        Ok(())
     }
 
     /// Width and height in pixels.

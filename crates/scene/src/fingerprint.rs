@@ -60,6 +60,15 @@ impl Fingerprint {
         part.push_str(value);
     }
 
+    /// The same with the camera and the settings of another.
+    #[must_use]
+    pub fn seen_as(&self, other: &Self) -> Self {
+        let of_view = |name: &str| name.starts_with("camera") || name.starts_with("render.");
+        let own = self.0.iter().filter(|(name, _)| !of_view(name));
+        let others = other.0.iter().filter(|(name, _)| of_view(name));
+        Self(own.chain(others).map(|(name, value)| (name.clone(), value.clone())).collect())
+    }
+
     /// The parts by name.
     pub fn parts(&self) -> &BTreeMap<String, String> {
         &self.0

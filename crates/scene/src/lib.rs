@@ -15,7 +15,7 @@ pub mod document;
 pub mod expression;
 mod fingerprint;
 pub mod import;
-mod kind;
+pub mod kind;
 pub mod path;
 mod presets;
 pub mod report;

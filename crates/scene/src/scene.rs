@@ -2,7 +2,7 @@
 
 use crate::compile::{Assembly, Compiled, Files, Library, Needs};
 use crate::description::{Animation, Backdrop, Description, Object};
-use crate::document::{Document, Node, Sources, Unreadable};
+use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::Fingerprint;
 use crate::report::{Finding, Problems, plain_io};
 use crate::store::{Bundle, Store};
@@ -74,6 +74,7 @@ pub struct Scene {
 #[derive(Clone, Debug)]
 struct Origin {
     document: Arc<Document>,
+    frame: f64,
     resolved: Node,
 }
 
@@ -85,32 +86,32 @@ impl Scene {
 
     /// Reads a scene file and what it includes, at frame 0.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        Self::read(path.as_ref(), Store::Disk)
+        Self::read(path.as_ref(), Library::default())
     }
 
     /// Reads a scene from files in memory, as [`Scene::load`] does from those of the disk.
     pub fn from_bundle(bundle: Bundle, name: &str) -> Result<Self, SceneError> {
-        Self::read(Path::new(name), Store::Memory(bundle))
+        Self::read(Path::new(name), Library::new(Store::Memory(bundle)))
     }
 
-    fn read(path: &Path, store: Store) -> Result<Self, SceneError> {
-        let text = store.text(path).map_err(|unreadable| match unreadable {
+    fn read(path: &Path, library: Library) -> Result<Self, SceneError> {
+        let text = library.store().text(path).map_err(|unreadable| match unreadable {
             Unreadable::Io(source) => SceneError::Read { path: path.into(), source },
             Unreadable::NotText(message) => SceneError::NotText { path: path.into(), message },
         })?;
-        Self::parse(text, &path.to_string_lossy(), store)
+        Self::parse(text, &path.to_string_lossy(), library)
     }
 
     /// Reads a scene from a text. `name` is what messages call it; files that the scene names are looked for in
     /// the folder of `name`.
     pub fn from_json(text: impl Into<String>, name: &str) -> Result<Self, SceneError> {
-        Self::parse(text.into(), name, Store::Disk)
+        Self::parse(text.into(), name, Library::default())
     }
 
-    fn parse(text: String, name: &str, store: Store) -> Result<Self, SceneError> {
-        let (document, findings) = Document::read(name, text, &store)
+    fn parse(text: String, name: &str, library: Library) -> Result<Self, SceneError> {
+        let (document, findings) = Document::read(name, text, library.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, None)))?;
-        Self::resolve(Arc::new(document), findings, 0.0, Library::new(store))
+        Self::resolve(Arc::new(document), findings, 0.0, library)
     }
 
     /// The same scene at another frame, which may lie between two. A scene that was not read from a file has no
@@ -122,6 +123,28 @@ impl Scene {
         }
     }
 
+    /// Reads the file again, and of its meshes those that have changed.
+    pub fn reload(&self, path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::read(path.as_ref(), self.library.renewed())
+    }
+
+    /// The same scene with another value at a place, which is a JSON pointer such as `/materials/red/phong/diffuse`;
+    /// `null` takes away what is there. The value may be an expression. Objects on the way are made where there are
+    /// none. Changes made since a scene was read from a file are lost.
+    pub fn with_value(&self, pointer: &str, value: serde_json::Value) -> Result<Self, SceneError> {
+        let (mut document, frame) = match &self.origin {
+            Some(origin) => ((*origin.document).clone(), origin.frame),
+            None => {
+                let tree = serde_json::to_value(&self.description).unwrap_or_default().into();
+                (Document { sources: Sources::default(), tree }, 0.0)
+            }
+        };
+        if let Err(finding) = put(&mut document.tree, pointer, value) {
+            return Err(SceneError::Problems(Problems::new(vec![finding], document.sources, None)));
+        }
+        Self::resolve(Arc::new(document), Vec::new(), frame, self.library.clone())
+    }
+
     fn resolve(
         document: Arc<Document>,
         mut findings: Vec<Finding>,
@@ -131,7 +154,7 @@ impl Scene {
         let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, frame);
         findings.extend(wrong);
         let description = described(&resolved, &mut findings);
-        let origin = Arc::new(Origin { document, resolved });
+        let origin = Arc::new(Origin { document, frame, resolved });
         let whole = description.is_some() && findings.is_empty();
         let scene = Self { description: description.unwrap_or_default(), origin: Some(origin), library };
         if whole {
@@ -172,11 +195,16 @@ impl Scene {
 
     /// The scene as a file, expressions resolved.
     pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(&self.to_value()).unwrap_or_default()
+    }
+
+    /// The same as a tree.
+    pub fn to_value(&self) -> serde_json::Value {
         let still = Description { animation: Animation::default(), ..self.description.clone() };
         let mut json = serde_json::to_value(&still).unwrap_or_default();
         schema::tidy(&mut json);
         schema::drop_nulls(&mut json);
-        serde_json::to_string_pretty(&json).unwrap_or_default()
+        json
     }
 
     /// What does not fit the schema. A scene from a file has been checked when it was read.

@@ -1,5 +1,8 @@
 //! What is known about one pixel.
 
+use crate::screen::relative_error;
+use crate::subject::Subject;
+use juggler::tracer::film::{Film, TILE};
 use serde::Serialize;
 
 /// What is known about one pixel.
@@ -25,4 +28,32 @@ pub struct Probe {
     pub shape: Option<String>,
     /// The material's name, or where it is described.
     pub material: Option<String>,
+}
+
+impl Probe {
+    /// What a film of the subject's picture and one ray tell about a pixel.
+    pub fn of(subject: &Subject, film: &Film, pixel: [u32; 2]) -> Self {
+        let mut probe = Self { pixel, ..Self::default() };
+        let [width, height] = subject.picture().size();
+        let [x, y] = pixel;
+        if x >= width || y >= height {
+            return probe;
+        }
+        let place = (y / TILE) as usize * film.layout().columns() as usize + (x / TILE) as usize;
+        if let Some(tile) = film.tile(place) {
+            let area = tile.pixels();
+            let at = (y.saturating_sub(area.y) as usize) * area.width as usize + x.saturating_sub(area.x) as usize;
+            probe.samples = tile.count();
+            probe.color = tile.means().get(at).filter(|_| tile.count() > 0).map(|color| color.to_array());
+            probe.noise = relative_error(&tile, at).map(|error| error as f32);
+        }
+        let center = pixel.map(|at| at as f32 + 0.5);
+        let Some((point, vertex)) = subject.seen_at(center) else { return probe };
+        let eye = subject.ray(center).origin;
+        probe.depth = Some((point - eye).length());
+        probe.position = Some(point.to_array());
+        probe.normal = Some(vertex.surface.shading_normal.to_array());
+        probe.object = Some(vertex.object);
+        probe
+    }
 }

@@ -3,7 +3,7 @@
 use crate::patches::Patches;
 use crate::share::Share;
 use juggler::Picture;
-use juggler::math::{Rgb, UVec2};
+use juggler::math::UVec2;
 use juggler::tracer::film::Film;
 use juggler::tracer::render::{Control, Exposure, Job, Stop, Work};
 use std::collections::BTreeSet;

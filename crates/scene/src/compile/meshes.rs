@@ -9,6 +9,7 @@ use juggler_tracer::shape::{Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// The meshes that were loaded so far.
 #[derive(Clone, Debug, Default)]
@@ -24,12 +25,34 @@ struct Entry {
     digest: [u8; 32],
     /// A mesh ready to be placed, with all that is odd about it; or why there is none.
     mesh: Result<(Mesh, Vec<String>), String>,
+    /// How long the file was and when it was last written to, before it was read.
+    state: Option<(u64, SystemTime)>,
+}
+
+/// How long a file is and when it was last written to.
+fn state(path: &std::path::Path) -> Option<(u64, SystemTime)> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.len(), metadata.modified().ok()?))
 }
 
 impl Library {
     /// Of files that come from there.
     pub fn new(store: Store) -> Self {
         Self { store, ..Self::default() }
+    }
+
+    /// Where its files come from.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// A library that reads those files again that have changed.
+    pub fn renewed(&self) -> Self {
+        let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
+        let entries = self.entries();
+        let entries = entries.iter().filter(|(path, entry)| same(path, entry));
+        let entries = entries.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(entries)) }
     }
 
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
@@ -59,10 +82,10 @@ impl Library {
 
 impl Entry {
     fn load(path: &std::path::Path, store: &Store) -> Self {
-        let limits = Limits::default();
+        let (limits, state) = (Limits::default(), state(path));
         let bytes = match store.mesh(path, &limits) {
             Ok(bytes) => bytes,
-            Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)) },
+            Err(error) => return Self { digest: [0; 32], mesh: Err(explain(&error)), state },
         };
         let (digest, imported) = rayon::join(|| blake3::hash(&bytes).into(), || parse(path, &bytes, &limits));
         // Building the hierarchy takes memory of its own.
@@ -75,7 +98,7 @@ impl Entry {
             warnings.extend(shape.warnings());
             Ok((shape, warnings))
         });
-        Self { digest, mesh }
+        Self { digest, mesh, state }
     }
 }
 

@@ -9,6 +9,7 @@ use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::MaterialTable;
 use juggler_tracer::world::{Object, World};
+use std::sync::Arc;
 
 mod count;
 mod defaults;
@@ -24,9 +25,10 @@ pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
 
 /// A scene ready to be rendered.
+#[derive(Clone)]
 pub struct Compiled {
     /// What can be seen.
-    pub world: World,
+    pub world: Arc<World>,
     /// The cameras with their names, the one to render with first. There is always one.
     pub cameras: Vec<(String, AnyCamera)>,
     /// Size, samples, integrator and the like.
@@ -76,7 +78,7 @@ impl Assembly {
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background);
-        Compiled { world, cameras: self.cameras, settings, warnings }
+        Compiled { world: Arc::new(world), cameras: self.cameras, settings, warnings }
     }
 }
 

@@ -3,6 +3,7 @@
 mod guard;
 mod include;
 mod parse;
+mod put;
 mod source;
 mod tree;
 
@@ -12,6 +13,7 @@ pub use source::{FileId, Place, Source, Sources};
 pub use tree::{Member, Members, Node, Value};
 
 pub(crate) use parse::parse;
+pub(crate) use put::put;
 
 use crate::report::Finding;
 use crate::store::Store;

@@ -1,6 +1,7 @@
 //! The texts that a scene was read from, and places in them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A file's number in [`Sources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -41,7 +42,8 @@ pub struct Source {
 /// All texts of a scene: the main file first, then what it includes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sources {
-    files: Vec<Source>,
+    /// Shared: reports hold them too.
+    files: Arc<Vec<Source>>,
 }
 
 impl Sources {
@@ -49,7 +51,7 @@ impl Sources {
     pub fn add(&mut self, name: impl Into<String>, text: String) -> FileId {
         let name = name.into();
         let folder = Path::new(&name).parent().map(Path::to_path_buf).unwrap_or_default();
-        self.files.push(Source { name, folder, text });
+        Arc::make_mut(&mut self.files).push(Source { name, folder, text });
         FileId(u32::try_from(self.files.len() - 1).unwrap_or(u32::MAX))
     }
 

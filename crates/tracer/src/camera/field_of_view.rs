@@ -40,7 +40,31 @@ pub(super) struct FieldOfView {
 
 const DEFAULT_VERTICAL_DEGREES: f32 = 40.0;
 
+/// Half of the narrowest and of the widest field of view that zooming leads to, as tangents.
+const ZOOM: std::ops::RangeInclusive<f32> = 1e-4..=20.0;
+
 impl FieldOfView {
+    /// The same with the tangent of its half divided by `factor`.
+    pub fn zoomed(&self, factor: f32) -> Self {
+        let factor = if factor > 0.0 { factor } else { 1.0 };
+        let tangent = |now: f32| (now / factor).clamp(*ZOOM.start(), *ZOOM.end());
+        let angle = |degrees: f32| {
+            let now = half_tangent("", degrees).unwrap_or(1.0);
+            fun::atan2(tangent(now), 1.0).to_degrees() * 2.0
+        };
+        let distance = |width: f32, distance: f32| width * 0.5 / tangent(width * 0.5 / distance);
+        let nothing = self.horizontal_degrees.is_none() && self.screen.is_none() && self.view_plane.is_none();
+        let vertical = self.vertical_degrees.or(nothing.then_some(DEFAULT_VERTICAL_DEGREES));
+        let screen = |s: Screen| Screen { distance: distance(s.width, s.distance), ..s };
+        let plane = |p: ViewPlane| ViewPlane { distance: distance(p.width, p.distance), ..p };
+        Self {
+            vertical_degrees: vertical.map(angle),
+            horizontal_degrees: self.horizontal_degrees.map(angle),
+            screen: self.screen.map(screen),
+            view_plane: self.view_plane.map(plane),
+        }
+    }
+
     /// Half of the width and height of a film one unit in front of the eye.
     pub fn half_extent(&self, size: UVec2) -> Result<Vec2, InvalidCamera> {
         self.check_single()?;

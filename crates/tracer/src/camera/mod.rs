@@ -10,7 +10,7 @@
 //!  "yaw_degrees": 0, "pitch_degrees": 0, "roll_degrees": 0, "move": {"right": 0, "up": 0, "forward": 0}}
 //! ```
 
-use juggler_math::UVec2;
+use juggler_math::{UVec2, Vec3};
 
 mod field_of_view;
 mod orthographic;
@@ -23,7 +23,7 @@ mod thin_lens;
 mod contract;
 
 pub use field_of_view::{Screen, ViewPlane};
-pub use pose::Move;
+pub use pose::{Axes, Move};
 pub use projection::{LANES, Projection};
 
 /// Why a camera cannot be: the field at fault and what it should be.
@@ -46,6 +46,16 @@ impl InvalidCamera {
 pub trait Camera: Send + Sync {
     /// The camera for pictures of `size` pixels.
     fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera>;
+    /// Where it stands and how it is turned.
+    fn axes(&self) -> Result<Axes, InvalidCamera>;
+    /// Stands at `eye` and looks along `direction`, its top leaning to `up`; nothing else of its pose is left.
+    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3);
+    /// Direction to which the picture's top leans before it is turned, of any length.
+    fn upward(&self) -> Vec3;
+    /// Divides the tangent of half its field of view, or the area that it shows, by `factor`, as far as pictures allow.
+    fn zoom(&mut self, factor: f32);
+    /// Makes what is `distance` ahead sharp, if it has a lens.
+    fn focus(&mut self, _distance: f32) {}
 }
 
 closed_set! {

@@ -7,7 +7,7 @@
 //! Rays start on the film, which stands at `eye`: what lies behind it is not seen.
 
 use super::field_of_view::positive;
-use super::pose::{Move, Pose};
+use super::pose::{Axes, Move, Pose};
 use super::{Camera, InvalidCamera, Projection};
 use juggler_math::{UVec2, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -102,6 +102,28 @@ impl Camera for Orthographic {
     fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
         let half = self.half_extent(size)?;
         Ok(Projection::parallel(&self.pose().axes()?, half, size))
+    }
+
+    fn axes(&self) -> Result<Axes, InvalidCamera> {
+        self.pose().axes()
+    }
+
+    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+        (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
+        (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
+        self.r#move = Move::default();
+    }
+
+    fn upward(&self) -> Vec3 {
+        self.up
+    }
+
+    fn zoom(&mut self, factor: f32) {
+        let zoomed = |length: f32| (length / factor).clamp(f32::MIN_POSITIVE, 1e30);
+        if self.width.is_none() {
+            self.height = Some(self.height.unwrap_or(DEFAULT_HEIGHT));
+        }
+        (self.width, self.height) = (self.width.map(zoomed), self.height.map(zoomed));
     }
 }
 

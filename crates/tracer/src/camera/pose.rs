@@ -44,10 +44,14 @@ pub(super) struct Pose {
 
 /// A camera's place and its axes: unit vectors at right angles, `right × up = -forward`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Axes {
+pub struct Axes {
+    /// The place, world space.
     pub eye: Vec3,
+    /// To the picture's right.
     pub right: Vec3,
+    /// To the picture's top.
     pub up: Vec3,
+    /// Into the picture.
     pub forward: Vec3,
 }
 

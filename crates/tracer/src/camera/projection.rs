@@ -57,6 +57,13 @@ impl Projection {
         Self { origin: axes.eye, corner, right: axes.right * pixel.x, down: axes.up * -pixel.y, lens }
     }
 
+    /// The same film in other pixels: cut into `to` of them instead of `from`.
+    #[must_use]
+    pub fn resampled(&self, from: UVec2, to: UVec2) -> Self {
+        let scale = from.max(UVec2::ONE).as_vec2() / to.max(UVec2::ONE).as_vec2();
+        Self { right: self.right * scale.x, down: self.down * scale.y, ..*self }
+    }
+
     /// Whether the place on the lens makes a difference.
     #[inline]
     pub fn needs_lens(&self) -> bool {

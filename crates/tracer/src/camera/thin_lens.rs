@@ -9,7 +9,7 @@
 //! `lens_radius` · |d − `focus_distance`| / `focus_distance`, measured on the plane at distance d.
 
 use super::field_of_view::{FieldOfView, Screen, ViewPlane, positive};
-use super::pose::{Move, Pose};
+use super::pose::{Axes, Move, Pose};
 use super::{Camera, InvalidCamera, Projection};
 use juggler_math::{UVec2, Vec3};
 use schemars::JsonSchema;
@@ -118,6 +118,30 @@ impl Camera for ThinLens {
             return Err(InvalidCamera::new("lens_radius", message));
         }
         Ok(Projection::thin_lens(&self.pose().axes()?, half, size, self.lens_radius, self.focus_distance))
+    }
+
+    fn axes(&self) -> Result<Axes, InvalidCamera> {
+        self.pose().axes()
+    }
+
+    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+        (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
+        (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
+        self.r#move = Move::default();
+    }
+
+    fn upward(&self) -> Vec3 {
+        self.up
+    }
+
+    fn zoom(&mut self, factor: f32) {
+        let zoomed = self.field_of_view().zoomed(factor);
+        (self.vertical_fov_degrees, self.horizontal_fov_degrees) = (zoomed.vertical_degrees, zoomed.horizontal_degrees);
+        (self.screen, self.view_plane) = (zoomed.screen, zoomed.view_plane);
+    }
+
+    fn focus(&mut self, distance: f32) {
+        self.focus_distance = distance;
     }
 }
 

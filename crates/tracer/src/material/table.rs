@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 /// All materials of a world by number, with the textures they use. Made by a
 /// [`MaterialCompiler`](super::MaterialCompiler).
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct MaterialTable {
     /// A material refers only to earlier ones.
     materials: Vec<Compiled>,

@@ -21,7 +21,8 @@ pub enum Stop {
     /// When it has as many as the film wants, in long rounds: the rays of many samples of a pixel go similar ways.
     #[default]
     Samples,
-    /// The same in short rounds, so that all tiles grow evenly: for a film that somebody looks at, or ends early.
+    /// The same in short rounds, the first of 1 and 4 samples, so that all tiles grow evenly: for a film that somebody
+    /// looks at, or ends early.
     Evenly,
     /// When the root mean square of its pixels' relative errors is at most this level, looked at after fixed
     /// numbers of samples: 64, 96, 128, 192, 256 and so on.
@@ -108,7 +109,11 @@ impl Round {
         {
             return None;
         }
-        let round_after = if stop == Stop::Samples { long_round_after } else { short_round_after };
+        let round_after = match stop {
+            Stop::Samples => long_round_after,
+            Stop::Evenly => even_round_after,
+            Stop::Noise(_) => short_round_after,
+        };
         let end = missing.end.min(round_after(missing.start));
         Some(Self { place, samples: missing.start..end })
     }
@@ -148,6 +153,15 @@ fn short_round_after(sample: u32) -> u32 {
     end.min(long_round_after(sample))
 }
 
+/// The same for somebody who looks and does not want to wait: 1, 4, 16, 32 and so on.
+fn even_round_after(sample: u32) -> u32 {
+    match sample {
+        0 => 1,
+        1..4 => 4,
+        _ => short_round_after(sample),
+    }
+}
+
 fn is_round(sample: u32) -> bool {
     sample.checked_sub(1).is_some_and(|before| short_round_after(before) == sample)
 }
@@ -178,6 +192,12 @@ impl<'f> Rounds<'f> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Whether the round that begins with this sample must wait for the one before: where noise is looked at, and within
+    /// a block, whose samples are summed in order.
+    fn follows(&self, sample: u32) -> bool {
+        matches!(self.stop, Stop::Noise(_)) || !sample.is_multiple_of(BLOCK)
+    }
+
     /// Waits for a round, of which no more than `most` samples are taken now; `None` when there is none to come.
     fn next(&self, most: u32, control: &Control) -> Option<Round> {
         let mut state = self.lock();
@@ -188,8 +208,7 @@ impl<'f> Rounds<'f> {
             if let Some(Reverse((start, place, end))) = state.waiting.pop() {
                 state.begun += 1;
                 let now = end.min(start.saturating_add(most.max(1)));
-                // The rounds of a tile follow from each other's samples only where noise is looked at.
-                if !matches!(self.stop, Stop::Noise(_)) {
+                if !self.follows(now) {
                     let rest = Round { place, samples: now..end };
                     let next = if now < end { Some(rest) } else { Round::after(self.film, self.stop, place, end) };
                     state.waiting.extend(next.map(|next| next.entry()));
@@ -204,10 +223,8 @@ impl<'f> Rounds<'f> {
     }
 
     fn done(&self, round: &Round) {
-        let next = match self.stop {
-            Stop::Samples | Stop::Evenly => None,
-            Stop::Noise(_) => Round::after(self.film, self.stop, round.place, 0),
-        };
+        let follows = self.follows(round.samples.end);
+        let next = if follows { Round::after(self.film, self.stop, round.place, 0) } else { None };
         let mut state = self.lock();
         state.begun -= 1;
         state.waiting.extend(next.map(|round| round.entry()));
@@ -266,6 +283,7 @@ mod tests {
         assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
         assert_eq!(short_round_after(70), 96, "within a round, to its end");
         assert_eq!([0, 70, 255, 256].map(long_round_after), [256, 256, 256, 512]);
+        assert_eq!([0, 1, 2, 4, 16, 70].map(even_round_after), [1, 4, 4, 16, 32, 96]);
     }
 
     #[test]

@@ -187,6 +187,17 @@ impl Level {
         Vertex { surface: vertex.surface.to_world(transform), ..vertex }
     }
 
+    /// A box around the shape `number`, in this level's space; empty when it has no end.
+    pub(super) fn shape_bounds(&self, number: u32) -> Aabb {
+        let (placed, number) = self.find(number);
+        let bounds = match &placed.content {
+            Content::Shape(shape) => shape.bounds(),
+            Content::Level(level) => level.shape_bounds(number),
+        };
+        let bounds = placed.transform.aabb(&bounds);
+        if bounds.is_finite() { bounds } else { Aabb::EMPTY }
+    }
+
     /// The nearest hit of one ray that goes through an instance of this level, which keeps it if it is better than
     /// `best`. `first` is the number of the level's first shape.
     #[inline(never)]

@@ -80,6 +80,7 @@ pub struct Lamp {
 }
 
 /// Everything that can be seen.
+#[derive(Clone)]
 pub struct World {
     top: Level,
     materials: MaterialTable,
@@ -142,6 +143,11 @@ impl World {
     /// A box around all bounded objects; empty when there are none.
     pub fn bounds(&self) -> Aabb {
         self.top.bounds()
+    }
+
+    /// A box around a shape by its number, which must be that of a [`Vertex`]; empty when it has no end.
+    pub fn shape_bounds(&self, number: u32) -> Aabb {
+        self.top.shape_bounds(number)
     }
 
     /// The numbers of the material at a vertex.

@@ -23,7 +23,7 @@ pub struct FilterSample {
 }
 
 /// A filter ready to sample.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Filter {
     /// Even over one pixel.
     Box,

@@ -1,0 +1,62 @@
+//! One look at a world: a ray through the centre of each pixel, coarse or not.
+
+use crate::Channel;
+use crate::screen::{Draft, color_of};
+use juggler::Picture;
+use juggler::math::{Ray, Rgb, UVec2};
+use juggler::tracer::film::Rect;
+use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, Path};
+use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stopped};
+use juggler::tracer::world::{Vertex, World};
+
+/// Numbers of objects, or of materials, as colours.
+enum Numbers {
+    Objects,
+    Materials,
+}
+
+impl Integrator for Numbers {
+    fn vertex(&self, _world: &World, _ray: &Ray, _path: &Path, vertex: &Vertex, emit: &mut Emit) {
+        let number = match self {
+            Self::Objects => vertex.object,
+            Self::Materials => vertex.material.0,
+        };
+        emit.add(color_of(number));
+    }
+}
+
+/// Renders `size` pixels of a picture, one ray each, on the threads of the current rayon pool. The channels `samples`
+/// and `noise` are of films: here they are the picture itself.
+pub fn draw(
+    picture: &Picture,
+    size: [u32; 2],
+    channel: Channel,
+    scheduler: Scheduler,
+    control: &Control,
+) -> Result<Draft, Stopped> {
+    let job = picture.job();
+    let [width, height] = size;
+    let camera = job.camera.resampled(UVec2::from_array(picture.size()), UVec2::new(width, height));
+    let integrator: &dyn Integrator = match channel {
+        Channel::Color | Channel::Samples | Channel::Noise => job.integrator,
+        Channel::Albedo => &Albedo {},
+        Channel::Normals => &Normals {},
+        Channel::Depth => &Depth { far: None },
+        Channel::Objects => &Numbers::Objects,
+        Channel::Materials => &Numbers::Materials,
+    };
+    let job = Job { camera: &camera, integrator, samples: 1, ..job };
+    let region = Rect { x: 0, y: 0, width, height };
+    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    let schedule = Schedule { scheduler, ..Schedule::default() };
+    render::render(&job, region, schedule, control, |rows: &[Rgb]| {
+        pixels.extend_from_slice(rows);
+        Ok::<(), Stopped>(())
+    })?;
+    if channel == Channel::Depth {
+        let far = pixels.iter().fold(0.0, |far: f32, pixel| far.max(pixel.r));
+        let scale = if far > 0.0 { 1.0 / far } else { 0.0 };
+        pixels.iter_mut().for_each(|pixel| *pixel = *pixel * scale);
+    }
+    Ok(Draft { size, pixels })
+}

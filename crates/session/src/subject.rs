@@ -1,0 +1,419 @@
+//! What is looked at: a scene, what people changed of it, and the picture that follows. No threads, no clocks: all that
+//! takes long is in [`Build::run`], which whoever holds the subject runs where it likes.
+
+use crate::{Edit, Setting, Status, pose};
+use juggler::math::{Aabb, Ray, Vec2, Vec3};
+use juggler::scene::description::Animation;
+use juggler::scene::kind::name_of;
+use juggler::scene::{Scene, SceneError, built_in_scenes};
+use juggler::tracer::camera::AnyCamera;
+use juggler::tracer::integrator::AnyIntegrator;
+use juggler::tracer::world::Vertex;
+use juggler::{Error, Picture, Settings, View};
+use serde_json::Value;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What is looked at.
+#[derive(Clone)]
+pub struct Subject {
+    /// The name that it was opened by.
+    pub name: String,
+    /// As its file has it, at frame 0.
+    file: Arc<Scene>,
+    /// With the values that were set, at the frame.
+    scene: Arc<Scene>,
+    /// Values that were set, by place, in their order.
+    values: Vec<(String, Value)>,
+    frame: f64,
+    settings: Settings,
+    /// The size that a reset leads back to; the scene's without.
+    size: Option<[u32; 2]>,
+    /// The camera where people moved it.
+    camera: Option<AnyCamera>,
+    /// Cameras that were kept in memory, by name.
+    kept: Vec<(String, AnyCamera)>,
+    upward: Vec3,
+    interest: Vec3,
+    /// Whether the point of interest was chosen, and does not follow the picture's middle.
+    held: bool,
+    picture: Arc<Picture>,
+}
+
+/// What an edit asks for.
+pub enum Change {
+    /// Nothing of the picture.
+    Nothing,
+    /// The picture is another one already: [`Subject::picture`].
+    View,
+    /// A world must be built first.
+    Build(Build),
+}
+
+/// A world to be built.
+pub struct Build {
+    task: Task,
+    name: String,
+    values: Vec<(String, Value)>,
+    frame: f64,
+    settings: Settings,
+    size: Option<[u32; 2]>,
+    /// The camera where people moved it, and that of the file as it was then.
+    camera: Option<(AnyCamera, Option<AnyCamera>)>,
+}
+
+#[derive(Clone)]
+enum Task {
+    /// Another scene, by its name.
+    Open,
+    /// The same file again; the scene holds meshes that need not be read again.
+    Reload(Arc<Scene>),
+    /// A scene that is here.
+    Have(Arc<Scene>),
+}
+
+impl Build {
+    /// A scene file, or a built-in scene by name.
+    pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
+        let settings = Settings { size, ..Settings::default() };
+        Self { task: Task::Open, name: name.into(), values: Vec::new(), frame: 0.0, settings, size, camera: None }
+    }
+
+    /// A scene that a program made.
+    pub fn of(scene: Scene, name: &str, size: Option<[u32; 2]>) -> Self {
+        Self { task: Task::Have(Arc::new(scene)), ..Self::open(name, size) }
+    }
+
+    /// Reads and builds: takes its time, on the threads of the current rayon pool. The text of an error is that of
+    /// `juggler check`, without colours.
+    pub fn run(self) -> Result<Subject, String> {
+        self.build().map_err(|error| text_of(&error))
+    }
+
+    fn build(mut self) -> Result<Subject, Error> {
+        let file = match self.task.clone() {
+            Task::Open => Arc::new(open(&self.name)?),
+            Task::Reload(scene) => self.reload(&scene)?,
+            Task::Have(scene) => scene,
+        };
+        let mut scene = Arc::clone(&file);
+        for (path, value) in &self.values {
+            scene = Arc::new(scene.with_value(path, value.clone())?);
+        }
+        if self.frame != 0.0 {
+            scene = Arc::new(scene.at_frame(self.frame)?);
+        }
+        let mut picture = Picture::new(&scene, &self.settings)?;
+        let upward = picture.view().camera.upward();
+        let camera = self.camera.take().map(|(camera, _)| camera);
+        if let Some(camera) = &camera {
+            picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
+        }
+        let Self { name, values, frame, settings, size, .. } = self;
+        let (picture, interest, held, kept) = (Arc::new(picture), Vec3::ZERO, false, Vec::new());
+        let mut subject =
+            Subject { name, file, scene, values, frame, settings, size, camera, kept, upward, interest, held, picture };
+        subject.look_for_interest();
+        Ok(subject)
+    }
+
+    /// The file again. What people changed stays, unless the file has changed there too.
+    fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
+        let new = Arc::new(if Path::new(&self.name).is_file() { old.reload(&self.name)? } else { open(&self.name)? });
+        let [before, after] = [old, &new].map(|scene| scene.to_value());
+        self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));
+        let known = |name: &String| new.description.cameras.contains_key(name) || name == "camera";
+        self.settings.camera = self.settings.camera.take().filter(known);
+        let same = |path: &str| before.pointer(path) == after.pointer(path);
+        let chosen = self.settings.camera.clone();
+        if !(same("/camera")
+            && same("/render/camera")
+            && chosen.map_or(same("/cameras"), |name| same(&format!("/cameras/{name}"))))
+        {
+            self.camera = None;
+        }
+        Ok(new)
+    }
+}
+
+/// A scene file, or a built-in scene by name.
+fn open(name: &str) -> Result<Scene, SceneError> {
+    let built_in = built_in_scenes().iter().any(|scene| scene.name == name);
+    if built_in && !Path::new(name).is_file() { Scene::built_in(name) } else { Scene::load(name) }
+}
+
+/// As `juggler check` says it.
+pub fn text_of(error: &Error) -> String {
+    match error {
+        Error::Scene(SceneError::Problems(problems)) => problems.render(false),
+        error => format!("error: {error}"),
+    }
+}
+
+impl Subject {
+    /// The picture to make.
+    pub fn picture(&self) -> &Arc<Picture> {
+        &self.picture
+    }
+
+    /// The scene at the frame, with the values that were set.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The point of interest.
+    pub fn interest(&self) -> Vec3 {
+        self.interest
+    }
+
+    /// The frame.
+    pub fn frame(&self) -> f64 {
+        self.frame
+    }
+
+    /// Length and pace of the animation, when there is one.
+    pub fn animation(&self) -> Option<Animation> {
+        let animation = self.file.description.animation;
+        (animation.frames > 1).then_some(animation)
+    }
+
+    /// The diagonal of a box around everything that has an end, 1 when nothing has.
+    pub fn extent(&self) -> f32 {
+        let bounds = self.picture.world().bounds();
+        if bounds.is_empty() { 1.0 } else { bounds.extent().length().max(f32::MIN_POSITIVE) }
+    }
+
+    /// Names of the cameras.
+    pub fn cameras(&self) -> Vec<String> {
+        let description = &self.scene.description;
+        let single = description.camera.iter().map(|_| "camera".to_owned());
+        let names = single.chain(description.cameras.keys().cloned());
+        names.chain(self.kept.iter().map(|(name, _)| name.clone())).collect()
+    }
+
+    /// Cameras that were kept in memory, as the member `cameras` of a scene file.
+    pub fn kept(&self) -> Value {
+        self.kept
+            .iter()
+            .map(|(name, camera)| (name.clone(), serde_json::to_value(camera).unwrap_or_default()))
+            .collect()
+    }
+
+    /// Changes what can be changed at once, and says what else is to be done. After an error nothing has changed. Edits
+    /// that are not about the picture are ignored.
+    pub fn apply(&mut self, edit: &Edit) -> Result<Change, String> {
+        match edit {
+            Edit::Scene(name) => {
+                let size = self.settings.size.or(self.size);
+                let build = Build::open(name, size);
+                Ok(Change::Build(Build { size: self.size, ..build }))
+            }
+            Edit::Reload => Ok(Change::Build(self.build(Task::Reload(Arc::clone(&self.file))))),
+            Edit::Reset => {
+                let settings = Settings { size: self.size, ..Settings::default() };
+                let build = self.build(Task::Have(Arc::clone(&self.file)));
+                Ok(Change::Build(Build { values: Vec::new(), frame: 0.0, settings, camera: None, ..build }))
+            }
+            Edit::Set { path, value } => {
+                let mut build = self.build(Task::Have(Arc::clone(&self.file)));
+                build.values.retain(|(other, _)| other != path);
+                build.values.push((path.clone(), value.clone()));
+                Ok(Change::Build(build))
+            }
+            Edit::At(frame) => {
+                let frame = self.animation().map_or(0.0, |animation| frame.clamp(0.0, f64::from(animation.frames)));
+                if frame == self.frame || !frame.is_finite() {
+                    return Ok(Change::Nothing);
+                }
+                Ok(Change::Build(Build { frame, ..self.build(Task::Have(Arc::clone(&self.file))) }))
+            }
+            Edit::Setting(setting) => self.set(setting),
+            Edit::Fly(_) | Edit::Orbit(_) | Edit::Zoom(_) | Edit::Focus(_) | Edit::Frame(_) => self.steer(edit),
+            Edit::Camera(name) => self.choose(name),
+            Edit::Look(camera) => {
+                let camera =
+                    serde_json::from_value(camera.clone()).map_err(|error| format!("error: camera: {error}"))?;
+                self.look(camera, true)
+            }
+            Edit::Bookmark(_) | Edit::Play(_) | Edit::Show(_) | Edit::Region(_) => Ok(Change::Nothing),
+        }
+    }
+
+    /// Keeps the camera under a name.
+    pub fn keep(&mut self, name: &str) {
+        self.kept.retain(|(other, _)| other != name);
+        self.kept.push((name.to_owned(), self.picture.view().camera));
+    }
+
+    fn build(&self, task: Task) -> Build {
+        let of_file = self.file.description.camera.clone();
+        Build {
+            task,
+            name: self.name.clone(),
+            values: self.values.clone(),
+            frame: self.frame,
+            settings: self.settings.clone(),
+            size: self.size,
+            camera: self.camera.clone().map(|camera| (camera, of_file)),
+        }
+    }
+
+    fn set(&mut self, setting: &Setting) -> Result<Change, String> {
+        let mut settings = self.settings.clone();
+        match setting {
+            Setting::Size(size) => settings.size = Some(*size),
+            Setting::Samples(samples) => settings.samples = Some(*samples),
+            Setting::Integrator(name) => settings.integrator = Some(name.clone()),
+            Setting::Sampler(name) => settings.sampler = Some(name.clone()),
+            Setting::MaxDepth(depth) => settings.max_depth = Some(*depth),
+            Setting::Tone(name) => settings.curve = Some(name.clone()),
+            Setting::Exposure(stops) => settings.exposure_stops = Some(*stops),
+            Setting::Seed(seed) => settings.seed = Some(*seed),
+            Setting::Threads(_) | Setting::Scheduler(_) => return Ok(Change::Nothing),
+        }
+        if matches!(setting, Setting::Integrator(name) if name != "classic") {
+            settings.max_depth = None;
+        }
+        let (mut render, mut tone) = (self.scene.description.render.clone(), self.scene.description.tone.clone());
+        let wished = settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error));
+        wished?;
+        render.camera = self.picture.view().render.camera;
+        self.see(View { camera: self.picture.view().camera, render, tone })?;
+        self.settings = settings;
+        Ok(Change::View)
+    }
+
+    fn see(&mut self, view: View) -> Result<(), String> {
+        self.picture = Arc::new(self.picture.seen(view).map_err(|error| text_of(&error))?);
+        Ok(())
+    }
+
+    /// Another camera; `fresh` when it has nothing to do with the one before.
+    fn look(&mut self, camera: AnyCamera, fresh: bool) -> Result<Change, String> {
+        let upward = camera.upward();
+        self.see(View { camera: camera.clone(), ..self.picture.view() })?;
+        self.camera = Some(camera);
+        if fresh {
+            (self.upward, self.held) = (upward, false);
+        }
+        if !self.held {
+            self.look_for_interest();
+        }
+        Ok(Change::View)
+    }
+
+    fn choose(&mut self, name: &str) -> Result<Change, String> {
+        if let Some((_, camera)) = self.kept.iter().find(|(kept, _)| kept == name) {
+            return self.look(camera.clone(), true);
+        }
+        let settings = Settings { camera: Some(name.to_owned()), ..self.settings.clone() };
+        let description = &self.scene.description;
+        let known = self.cameras();
+        juggler::check_name("camera", name, known.iter().map(String::as_str)).map_err(|error| text_of(&error))?;
+        let camera = description.cameras.get(name).or(description.camera.as_ref()).cloned();
+        if let Some(camera) = camera {
+            self.look(camera, true)?;
+            (self.settings, self.camera) = (settings, None);
+        }
+        Ok(Change::View)
+    }
+
+    fn steer(&mut self, edit: &Edit) -> Result<Change, String> {
+        let camera = self.picture.view().camera;
+        let upward = self.upward;
+        let moved = match edit {
+            Edit::Fly(fly) => pose::fly(&camera, upward, fly),
+            Edit::Orbit(orbit) => {
+                self.held = true;
+                pose::orbit(&camera, upward, self.interest, orbit)
+            }
+            Edit::Zoom(factor) => pose::zoom(&camera, *factor),
+            Edit::Focus(pixel) => {
+                let Some((point, _)) = self.seen_at(*pixel) else { return Ok(Change::Nothing) };
+                (self.interest, self.held) = (point, true);
+                pose::focus(&camera, point)
+            }
+            Edit::Frame(pixel) => {
+                let bounds = self.to_frame(*pixel);
+                (self.interest, self.held) = (bounds.center(), true);
+                pose::frame(&camera, upward, &bounds, self.picture.size())
+            }
+            _ => None,
+        };
+        let Some(moved) = moved.filter(|moved| *moved != camera) else { return Ok(Change::Nothing) };
+        let change = self.look(moved, false)?;
+        if matches!(edit, Edit::Fly(_)) && self.held && !self.is_ahead(self.interest) {
+            self.held = false;
+            self.look_for_interest();
+        }
+        Ok(change)
+    }
+
+    fn is_ahead(&self, point: Vec3) -> bool {
+        let axes = self.picture.view().camera.axes();
+        axes.is_ok_and(|axes| (point - axes.eye).dot(axes.forward) > 0.0)
+    }
+
+    /// The point and the vertex that is seen at a place of the film, in pixels.
+    pub fn seen_at(&self, pixel: [f32; 2]) -> Option<(Vec3, Vertex)> {
+        let mut ray = self.ray(pixel);
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+            return None;
+        }
+        let world = self.picture.world();
+        let hit = world.closest(&mut ray);
+        hit.is_some().then(|| world.vertex(&ray, &hit)).map(|vertex| (vertex.surface.point, vertex))
+    }
+
+    /// The ray through a place of the film, in pixels, and the middle of the lens.
+    pub fn ray(&self, pixel: [f32; 2]) -> Ray {
+        self.picture.job().camera.ray(Vec2::from_array(pixel), Vec2::splat(0.5), 0.0)
+    }
+
+    /// Writes down how things stand.
+    pub fn describe(&self, status: &mut Status) {
+        let View { camera, render, tone } = self.picture.view();
+        self.name.clone_into(&mut status.scene);
+        status.size = render.size;
+        status.samples_wanted = render.samples;
+        status.integrator = render.integrator.name().to_owned();
+        status.max_depth = match &render.integrator {
+            AnyIntegrator::Classic(classic) => Some(classic.max_depth),
+            _ => None,
+        };
+        status.sampler = name_of(&render.sampler);
+        status.tone = name_of(&tone.curve);
+        status.exposure = tone.exposure_stops;
+        status.cameras = self.cameras();
+        status.camera = serde_json::to_value(&camera).unwrap_or_default();
+        status.interest = self.interest.to_array();
+        status.extent = self.extent();
+        status.frame = self.frame;
+        let animation = self.animation();
+        status.frames = animation.map_or(0, |animation| animation.frames);
+        status.frame_rate = animation.map_or(0.0, |animation| animation.frames_per_second);
+    }
+
+    fn to_frame(&self, pixel: Option<[f32; 2]>) -> Aabb {
+        let world = self.picture.world();
+        let object = pixel.and_then(|pixel| self.seen_at(pixel)).map(|(_, vertex)| world.shape_bounds(vertex.object));
+        let all = world.bounds();
+        let all = if all.is_empty() { Aabb { min: -Vec3::ONE, max: Vec3::ONE } } else { all };
+        object.filter(|bounds| !bounds.is_empty()).unwrap_or(all)
+    }
+
+    /// What is seen in the picture's middle, or as far ahead as the middle of everything.
+    fn look_for_interest(&mut self) {
+        let middle = self.picture.size().map(|edge| edge as f32 * 0.5);
+        if let Some((point, _)) = self.seen_at(middle) {
+            self.interest = point;
+            return;
+        }
+        let Ok(axes) = self.picture.view().camera.axes() else { return };
+        let bounds = self.picture.world().bounds();
+        let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
+        let ahead = (center - axes.eye).dot(axes.forward);
+        let ahead = if ahead > 0.0 { ahead } else { self.extent() };
+        self.interest = axes.eye + axes.forward * ahead;
+    }
+}
