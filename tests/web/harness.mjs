@@ -66,6 +66,7 @@ export class Browser {
     this.page.on("pageerror", (error) => this.faults.push(String(error)));
     this.page.on("console", (message) => message.type() === "error" && this.faults.push(message.text()));
     await this.page.goto(url);
+    await this.page.waitForFunction(() => document.getElementById("size").textContent.length > 0);
   }
 
   text(selector) {
