@@ -91,7 +91,7 @@ function keys(hands) {
       before = null;
       return;
     }
-    const seconds = before === null ? 1 / 60 : Math.min(0.1, (now - before) / 1000);
+    const seconds = before === null ? 1 / 60 : Math.min(0.1, Math.max(0.001, (now - before) / 1000));
     before = now;
     const step = hands.extent() * PACE * seconds * (fast ? 4 : 1);
     const sum = {};
@@ -110,8 +110,8 @@ function keys(hands) {
     if (!MOVES[event.code]) return;
     event.preventDefault();
     held.add(event.code);
-    if (!running) requestAnimationFrame(fly);
-    running = true;
+    // The first step at once: the shortest tap moves.
+    if (!running) fly(performance.now());
   });
   addEventListener("keyup", (event) => {
     fast = event.shiftKey;

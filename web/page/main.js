@@ -12,10 +12,10 @@ const cores = Math.max(1, navigator.hardwareConcurrency ?? 2);
 let view = null;
 let pool = null;
 let status = null;
-/** What is open: the name, and files that were dropped. */
-let source = { name: new URLSearchParams(location.search).get("scene") ?? "juggler", files: [] };
-/** Edits since it was opened: workers that join later make them too. */
-let log = [];
+/** What is open: the name, files that were dropped, and the edits since then, which workers that join later make too. */
+let source = { name: new URLSearchParams(location.search).get("scene") ?? "juggler", files: [], log: [] };
+/** What is being opened instead; where it has mistakes, the other stays. */
+let next = null;
 let began = 0;
 let playing = null;
 
@@ -25,25 +25,25 @@ function fail(text) {
 }
 
 function edit(...edits) {
-  log.push(...edits);
+  (next ?? source).log.push(...edits);
   $("hash").textContent = "";
   began = performance.now();
   pool.edit(...edits);
 }
 
-function open(next) {
+function open(name, files) {
   play(false);
   fail("");
-  source = next;
-  log = [];
+  next = { name, files, log: [] };
   began = performance.now();
   $("hash").textContent = "";
   if (pool.lost) begin();
-  else pool.open(source.name, source.files, log);
+  else pool.open(next);
 }
 
 const news = {
   opened(now) {
+    [source, next] = [next ?? source, null];
     view.open(now.outline);
     tell(now);
     const known = [...$("scene").options].some((option) => option.value === source.name && source.files.length === 0);
@@ -74,7 +74,11 @@ const news = {
     progress();
   },
 
-  failed: fail,
+  failed(text) {
+    next = null;
+    fail(text);
+    if (status) progress();
+  },
 };
 
 /** What the status says, into the fields of the panel, but for the one that somebody is at. */
@@ -132,7 +136,7 @@ function panel() {
     const bare = document.body.classList.toggle("bare");
     $("toggle").setAttribute("aria-expanded", String(!bare));
   };
-  $("scene").onchange = () => open({ name: $("scene").value, files: [] });
+  $("scene").onchange = () => open($("scene").value, []);
   $("open").onclick = () => $("files").click();
   $("files").onchange = () => take(chosen($("files").files));
   $("save").onclick = save;
@@ -157,7 +161,8 @@ function panel() {
 
 async function take(files) {
   try {
-    open(await scene(files));
+    const { name, files: all } = await scene(files);
+    open(name, all);
   } catch (error) {
     fail(error.message);
   }
@@ -186,7 +191,7 @@ function begin() {
   $("hash").textContent = "";
   began = performance.now();
   pool = new Pool(module, count, (what, ...rest) => news[what](...rest));
-  pool.open(source.name, source.files, log);
+  pool.open(next ?? source);
 }
 
 async function start() {

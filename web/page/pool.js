@@ -34,13 +34,13 @@ export class Pool {
 
   tell(message) {
     this.number += 1;
-    this.busy = { ...message, number: this.number, answers: [], tiles: [] };
+    this.busy = { ...message, number: this.number, answers: [], tiles: [], late: [] };
     this.workers.forEach((worker) => worker.postMessage({ ...message, number: this.number }));
   }
 
-  /** Opens a scene; `edits` are made at once. */
-  open(name, files, edits) {
-    this.waiting = [...edits];
+  /** Opens a scene; the edits of its `log` are made at once. */
+  open({ name, files, log }) {
+    this.waiting = [...log];
     this.tell({ type: "open", name, files });
   }
 
@@ -58,6 +58,8 @@ export class Pool {
   }
 
   heard(index, message) {
+    // Tiles on their way when an edit was made count when it turns out that it leaves the samples as they are.
+    if (message.type === "tiles" && this.busy && message.number === this.number - 1) this.busy.late.push(message);
     if (message.number !== this.number || message.type === "ready") return;
     if (message.type === "tiles") {
       // What comes before the coarse frame is whole has to wait, or that would cover it.
@@ -77,7 +79,7 @@ export class Pool {
   }
 
   answered() {
-    const { type, answers, tiles, coarse } = this.busy;
+    const { type, answers, tiles, late, coarse } = this.busy;
     const { status, error, kept } = answers[0];
     this.busy = null;
     this.size = status.outline.size;
@@ -89,7 +91,7 @@ export class Pool {
     const slowest = Math.max(...answers.map(({ took }) => took));
     if (!kept) this.pace.learn(coarse[0] * coarse[1], slowest / 1000);
     this.news("frame", { status, error, kept, coarse, patches: answers });
-    tiles.forEach((message) => this.news("tiles", message));
+    (kept ? [...late, ...tiles] : tiles).forEach((message) => this.news("tiles", message));
     if (this.waiting.length > 0) this.flush();
   }
 }
