@@ -4,6 +4,7 @@ use juggler::Error;
 use juggler::film::{MergeError, PartError, ResumeError};
 use juggler::imaging::ImageError;
 use juggler::scene::import::{Fault, ImportError};
+use juggler::scene::named::Unknown;
 use juggler::scene::{Problems, SceneError};
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -90,8 +91,15 @@ impl From<SceneError> for Failure {
         match error {
             SceneError::Problems(problems) => Self::Scene(Box::new(problems)),
             SceneError::Read { .. } => Self::System(error.to_string()),
+            SceneError::Unknown(unknown) => unknown.into(),
             SceneError::NotText { .. } | SceneError::UnknownBuiltIn { .. } => Self::Wrong(error.to_string()),
         }
+    }
+}
+
+impl From<Unknown> for Failure {
+    fn from(unknown: Unknown) -> Self {
+        if unknown.is_file { Self::System(unknown.message) } else { Self::Wrong(unknown.message) }
     }
 }
 

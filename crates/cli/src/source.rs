@@ -3,8 +3,7 @@
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::scene::document::bytes_to_read;
-use juggler::scene::suggest::closest;
-use juggler::scene::{Scene, built_in_scenes};
+use juggler::scene::{Scene, named};
 use std::io::Read;
 use std::path::Path;
 
@@ -14,8 +13,6 @@ const STANDARD_INPUT: &str = "-";
 const STANDARD_INPUT_NAME: &str = "standard input";
 /// Most bytes that are taken from there.
 const MAX_BYTES: u64 = 64 << 20;
-/// Most names of files that are looked through for what was meant.
-const MAX_NAMES: usize = 10_000;
 
 /// Reads a scene file; what is no file may be the name of a built-in scene. A text that needs more than `most` bytes of
 /// memory is refused.
@@ -26,20 +23,11 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
         return Ok(Scene::from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
-    if path.exists() && !path.is_dir() {
-        if most.is_some() && path.is_file() {
-            check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
-            check_memory(std::fs::read(path).map_or(0, |text| bytes_to_read(&text)), name, most)?;
-        }
-        return Ok(Scene::load(path)?);
+    if most.is_some() && path.is_file() {
+        check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
+        check_memory(std::fs::read(path).map_or(0, |text| bytes_to_read(&text)), name, most)?;
     }
-    if built_in_scenes().iter().any(|scene| scene.name == name) {
-        return Ok(Scene::built_in(name)?);
-    }
-    if path.is_dir() {
-        return Err(Failure::Wrong(format!("`{name}` is a folder, not a scene file")));
-    }
-    Err(unknown(name, "scene", built_in_scenes().iter().map(|scene| scene.name)))
+    Ok(Scene::named(name)?)
 }
 
 fn check_memory(needed: u64, name: &str, most: Option<u64>) -> Result<(), Failure> {
@@ -70,32 +58,9 @@ pub fn stem(name: &str) -> &str {
     stem.filter(|stem| *stem != STANDARD_INPUT).unwrap_or("picture")
 }
 
-/// What to say of a name that leads to no file and to nothing built in. Somebody who writes an ending or a folder means
-/// a file, and the file is missing; else the name is wrong.
+/// What to say of a name that leads to no file and to nothing built in.
 pub fn unknown<'n>(name: &str, what: &str, built_in: impl IntoIterator<Item = &'n str>) -> Failure {
-    let path = Path::new(name);
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let files = names_in(folder);
-    let file_name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    let near = |names: &[String]| closest(file_name, names.iter().map(String::as_str)).map(str::to_owned);
-    if path.extension().is_some() || !folder.as_os_str().is_empty() {
-        let meant = near(&files).map(|near| folder.join(near).display().to_string());
-        return Failure::System(format!("no file is called `{name}`{}", question(meant)));
-    }
-    // What follows a colon is the size of a built-in mesh.
-    let bare = file_name.split(':').next().unwrap_or_default();
-    let meant = closest(bare, built_in).map(str::to_owned).or_else(|| near(&files));
-    Failure::Wrong(format!("no file and no built-in {what} is called `{name}`{}", question(meant)))
-}
-
-fn question(meant: Option<String>) -> String {
-    meant.map(|meant| format!(", did you mean `{meant}`?")).unwrap_or_default()
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().take(MAX_NAMES);
-    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
+    named::unknown(name, what, built_in).into()
 }
 
 #[cfg(test)]

@@ -58,9 +58,21 @@ impl Picture {
     /// Builds the world for a scene and what is wished for beyond it.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
         let scene = settings.apply(scene)?;
+        let compiled = scene.compile()?;
+        Self::of(&scene, settings, compiled)
+    }
+
+    /// The same with the world of this picture, which must be that of the scene too: [`Scene::has_world_of`].
+    pub fn again(&self, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        let scene = settings.apply(scene)?;
+        let compiled = scene.compile_with(&self.compiled)?;
+        Self::of(&scene, settings, compiled)
+    }
+
+    /// `scene` is as it is wished for, and `compiled` what became of it.
+    fn of(scene: &Scene, settings: &Settings, compiled: Compiled) -> Result<Self, Error> {
         let [width, height] = scene.description.render.size;
         let region = settings.region([width, height])?;
-        let compiled = scene.compile()?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
         let (tone, limit, fingerprint) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());

@@ -98,7 +98,8 @@ fn digest(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex()[..32].to_owned()
 }
 
-fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {
+/// The mesh files that a scene names, each once.
+pub(crate) fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     for (name, objects) in &scene.groups {
         collect(objects, &Path::root().key("groups").key(name.as_str()), files, &mut found);

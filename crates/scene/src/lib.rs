@@ -9,6 +9,7 @@
 //! Whatever is wrong becomes a [`report`] with file, line, column, path and what was probably meant.
 
 pub mod animate;
+mod bookmark;
 pub mod compile;
 pub mod description;
 pub mod document;
@@ -16,6 +17,7 @@ pub mod expression;
 mod fingerprint;
 pub mod import;
 pub mod kind;
+pub mod named;
 pub mod path;
 mod presets;
 pub mod report;
@@ -25,6 +27,7 @@ mod store;
 pub mod suggest;
 pub mod validate;
 
+pub use bookmark::{camera_json, with_camera};
 pub use compile::Compiled;
 pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};
 pub use fingerprint::Fingerprint;

@@ -1,9 +1,10 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::compile::{Assembly, Compiled, Files, Library, Needs};
+use crate::compile::{self, Assembly, Compiled, Files, Library, Needs};
 use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, put};
-use crate::fingerprint::Fingerprint;
+use crate::fingerprint::{Fingerprint, mesh_files};
+use crate::named::Unknown;
 use crate::report::{Finding, Problems, plain_io};
 use crate::store::{Bundle, Store};
 use crate::validate::validate;
@@ -13,6 +14,7 @@ use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
 use juggler_tracer::texture::AnyTexture;
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,6 +46,9 @@ pub enum SceneError {
         /// What was probably meant.
         help: Option<String>,
     },
+    /// No file has this name, nor has a built-in scene.
+    #[error(transparent)]
+    Unknown(#[from] Unknown),
     /// The scene has mistakes.
     #[error("{0}")]
     Problems(Problems),
@@ -181,6 +186,41 @@ impl Scene {
             return Err(SceneError::Problems(problems));
         }
         Ok(assembly.compile(self.description.render.clone(), problems))
+    }
+
+    /// Compiles the scene with the world of an earlier compilation, which must be this scene's too:
+    /// [`Scene::has_world_of`].
+    pub fn compile_with(&self, earlier: &Compiled) -> Result<Compiled, SceneError> {
+        let (cameras, findings) = compile::look_at(&self.description, &earlier.world);
+        let findings = joined(self.own_findings(), findings);
+        let broken = findings.iter().any(Finding::is_error);
+        let warnings = self.report(findings);
+        if broken {
+            return Err(SceneError::Problems(warnings));
+        }
+        let (world, settings) = (Arc::clone(&earlier.world), self.description.render.clone());
+        Ok(Compiled { world, cameras, settings, warnings })
+    }
+
+    /// Whether the same stands in both, however it is looked at. Mesh files are compared by their contents.
+    pub fn has_world_of(&self, other: &Self) -> bool {
+        let (a, b) = (&self.description, &other.description);
+        let digests = |scene: &Self| -> Vec<(PathBuf, [u8; 32])> {
+            scene.mesh_files().into_iter().map(|file| (file.clone(), scene.library.digest(&file))).collect()
+        };
+        (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
+            && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
+            && digests(self) == digests(other)
+    }
+
+    fn mesh_files(&self) -> BTreeSet<PathBuf> {
+        mesh_files(&self.description, &self.files())
+    }
+
+    /// The files that it was read from, and those of its meshes.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let texts = self.origin.iter().flat_map(|origin| origin.document.sources.names());
+        texts.map(PathBuf::from).chain(self.mesh_files()).collect()
     }
 
     /// What building the world will need memory for; no file is read for it.

@@ -6,23 +6,36 @@
 //! - An edit cancels what is being rendered. What follows is first a coarse frame, as fine as the frame budget allows,
 //!   then the picture itself, sample by sample, until it is the one that `juggler render` writes, to the bit.
 
+//!
+//! With the feature `native`, which is there by default. Without it there are neither threads nor clocks nor files that are
+//! watched: what stands here for who brings their own, as the page that renders in the browser alone, is [`Subject`] with
+//! what makes pictures of it: [`draw`], [`screen`], [`Pace`].
+
 mod coarse;
-mod draw;
+pub mod draw;
 mod edit;
 mod frame;
-mod pose;
+pub mod pose;
 mod probe;
+#[cfg(feature = "native")]
+mod rendering;
 pub mod screen;
+#[cfg(feature = "native")]
 mod session;
+#[cfg(feature = "native")]
 mod shared;
 mod status;
 mod subject;
+#[cfg(feature = "native")]
+mod watch;
+#[cfg(feature = "native")]
 mod worker;
 
-pub use coarse::Pace;
+pub use coarse::{Pace, coarse_size};
 pub use edit::{Channel, Edit, Fly, Orbit, Setting};
 pub use frame::Frame;
 pub use probe::Probe;
+#[cfg(feature = "native")]
 pub use session::{Options, SaveError, Session};
 pub use status::{Stage, Status};
-pub use subject::{Build, Change, Subject, text_of};
+pub use subject::{Build, Change, MOST_PIXELS, Mistake, Subject, text_of};

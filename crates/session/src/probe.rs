@@ -2,6 +2,7 @@
 
 use crate::screen::relative_error;
 use crate::subject::Subject;
+use juggler::scene::compile::Part;
 use juggler::tracer::film::{Film, TILE};
 use serde::Serialize;
 
@@ -32,15 +33,15 @@ pub struct Probe {
 
 impl Probe {
     /// What a film of the subject's picture and one ray tell about a pixel.
-    pub fn of(subject: &Subject, film: &Film, pixel: [u32; 2]) -> Self {
+    pub fn of(subject: &Subject, film: Option<&Film>, pixel: [u32; 2]) -> Self {
         let mut probe = Self { pixel, ..Self::default() };
         let [width, height] = subject.picture().size();
         let [x, y] = pixel;
         if x >= width || y >= height {
             return probe;
         }
-        let place = (y / TILE) as usize * film.layout().columns() as usize + (x / TILE) as usize;
-        if let Some(tile) = film.tile(place) {
+        let place = |film: &Film| (y / TILE) as usize * film.layout().columns() as usize + (x / TILE) as usize;
+        if let Some(tile) = film.and_then(|film| film.tile(place(film))) {
             let area = tile.pixels();
             let at = (y.saturating_sub(area.y) as usize) * area.width as usize + x.saturating_sub(area.x) as usize;
             probe.samples = tile.count();
@@ -54,6 +55,10 @@ impl Probe {
         probe.position = Some(point.to_array());
         probe.normal = Some(vertex.surface.shading_normal.to_array());
         probe.object = Some(vertex.object);
+        if let Some(part) = Part::of(&subject.scene().description, vertex.object) {
+            probe.shape = Some(format!("{} {}", part.kind, part.path));
+            probe.material = Some(part.material);
+        }
         probe
     }
 }

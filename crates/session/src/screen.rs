@@ -44,7 +44,7 @@ impl Toner {
 }
 
 /// A picture that waits for the film: coarse pixels, perhaps.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Draft {
     /// Width and height of its pixels.
     pub size: [u32; 2],
@@ -90,13 +90,14 @@ impl Canvas {
         Self { size, rgba, shown: Vec::new() }
     }
 
-    /// Paints the tiles of a film of the whole picture that have become better and have at least `least` samples.
+    /// Paints the tiles of a film of the whole picture that have become better and have at least `least` samples; with 0,
+    /// those too that have none.
     pub fn paint(&mut self, film: &Film, least: u32, pixel: impl Fn(&Tile) -> Vec<[u8; 4]>) {
-        self.shown.resize(film.len(), 0);
+        self.shown.resize(film.len(), u32::MAX);
         for place in 0..film.len() {
             let Some(tile) = film.tile(place) else { continue };
             let count = tile.count();
-            if count < least.max(1) || self.shown.get(place) == Some(&count) {
+            if count < least || self.shown.get(place) == Some(&count) {
                 continue;
             }
             let (pixels, area) = (pixel(&tile), tile.pixels());

@@ -1,18 +1,15 @@
 //! The handle that windows, pages and scripts hold.
 
-use crate::coarse::Pace;
-use crate::screen::{Draft, Toner};
 use crate::shared::Shared;
 use crate::subject::Build;
 use crate::worker::{self, Worker};
-use crate::{Channel, Edit, Frame, Probe, Status};
-use juggler::imaging::{self, Destination, Format, Options as FileOptions, RowWriter, Tone};
+use crate::{Edit, Frame, Probe, Status};
+use juggler::imaging::{self, Destination, Format, Options as FileOptions, RowWriter};
 use juggler::scene::Scene;
-use juggler::tracer::render::Scheduler;
 use std::io::{Cursor, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What a session is opened with.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +51,7 @@ struct Handle(Arc<Shared>);
 
 impl Drop for Handle {
     fn drop(&mut self) {
-        self.0.close();
+        self.0.tell(|desk| desk.closed = true);
     }
 }
 
@@ -78,9 +75,7 @@ impl Session {
         shared.publish(None, status.clone(), None);
         let work = move || {
             let Some(pool) = worker::pool(options.threads) else { return };
-            let mut worker = Worker::new(shared, options, pool, status);
-            worker.build(build, true);
-            worker.run();
+            Worker::new(shared, options, pool, status).run(build);
         };
         let started = std::thread::Builder::new().name("session".into()).spawn(work);
         if let Err(error) = started {
@@ -124,7 +119,7 @@ impl Session {
     /// What is known about a pixel of the picture; nothing before there is a world.
     pub fn probe(&self, pixel: [u32; 2]) -> Option<Probe> {
         let shown = self.shared().desk().shown.clone()?;
-        Some(Probe::of(&shown.subject, &shown.film, pixel))
+        Some(Probe::of(&shown.subject, shown.film.as_deref(), pixel))
     }
 
     /// Cameras that were kept, as the member `cameras` of a scene file.
@@ -151,38 +146,13 @@ impl Session {
         &self,
         writer: impl FnOnce(&imaging::Header) -> Result<Box<dyn RowWriter>, imaging::ImageError>,
     ) -> Result<(), SaveError> {
-        let shown = self.shared().desk().shown.clone().filter(|shown| shown.film.samples() > 0);
-        let shown = shown.ok_or(SaveError::Nothing)?;
-        let picture = shown.picture();
-        let mut writer = writer(&picture.header(FileOptions::default()))?;
-        picture.develop(&shown.film, |rows| writer.write_rows(rows))?;
-        Ok(writer.finish()?)
-    }
-}
-
-impl Worker {
-    fn new(shared: Arc<Shared>, options: Options, pool: Arc<rayon::ThreadPool>, status: Status) -> Self {
-        Self {
-            shared,
-            options,
-            pool,
-            status,
-            scheduler: Scheduler::default(),
-            subject: None,
-            film: None,
-            draft: Draft::default(),
-            canvas: None,
-            toner: Toner::new(&Tone::default()),
-            channel: Channel::Color,
-            region: None,
-            pace: Pace::default(),
-            building: None,
-            builds: 0,
-            moved: false,
-            retoned: false,
-            drawn: Instant::now(),
-            playing: None,
+        let shown = self.shared().desk().shown.clone().ok_or(SaveError::Nothing)?;
+        if shown.draft.pixels.is_empty() {
+            return Err(SaveError::Nothing);
         }
+        let mut writer = writer(&shown.picture().header(FileOptions::default()))?;
+        shown.develop(|rows| writer.write_rows(rows))?;
+        Ok(writer.finish()?)
     }
 }
 

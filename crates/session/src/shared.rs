@@ -1,13 +1,14 @@
 //! What a session's handles and its worker share.
 
-use crate::subject::Subject;
+use crate::screen::Draft;
+use crate::subject::{Mistake, Subject};
 use crate::{Edit, Frame, Status};
 use juggler::Picture;
+use juggler::math::Rgb;
 use juggler::tracer::film::Film;
-use juggler::tracer::render::Control;
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Something to be called when there is news.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -30,13 +31,11 @@ pub struct Desk {
     /// How many were asked for.
     pub asked: u64,
     /// A world that was built, or why there is none, with the number of its order.
-    pub built: Option<(u64, Result<Subject, String>)>,
-    /// The film is exposed.
-    pub exposed: bool,
+    pub built: Option<(u64, Result<Subject, Mistake>)>,
+    /// What was being rendered is done.
+    pub done: bool,
     /// Nobody holds the session any more.
     pub closed: bool,
-    /// What is being rendered.
-    pub rendering: Option<Rendering>,
     /// What is shown.
     pub frame: Option<Arc<Frame>>,
     /// How things stand.
@@ -46,21 +45,15 @@ pub struct Desk {
     wakes: Vec<Wake>,
 }
 
-/// What is being rendered.
-pub struct Rendering {
-    /// Ends it.
-    pub control: Arc<Control>,
-    /// Until when it is not to be disturbed: a frame that will be ready soon is worth more than none.
-    pub until: Option<Instant>,
-}
-
 /// What can be asked about and saved.
 #[derive(Clone)]
 pub struct Shown {
     /// What is looked at.
     pub subject: Arc<Subject>,
     /// Its samples so far.
-    pub film: Arc<Film>,
+    pub film: Option<Arc<Film>>,
+    /// The picture before there are samples.
+    pub draft: Arc<Draft>,
 }
 
 impl Shown {
@@ -68,9 +61,31 @@ impl Shown {
     pub fn picture(&self) -> &Arc<Picture> {
         self.subject.picture()
     }
+
+    /// Hands the picture's rows to `rows`, from the top; where there are no samples yet, those of the draft.
+    pub fn develop<E>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<(), E> {
+        let (size, draft) = (self.picture().size(), &self.draft);
+        let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| draft.at([x, y], size)).collect() };
+        let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows(&row(y))) };
+        for (number, band) in (0..).zip(film.layout().bands()) {
+            let mut pixels: Vec<Rgb> = (band.y..band.y + band.height).flat_map(row).collect();
+            for tile in film.layout().in_band(number).filter_map(|tile| film.tile(tile as usize)) {
+                if tile.count() > 0 {
+                    tile.copy_to(&band, &mut pixels);
+                }
+            }
+            rows(&pixels)?;
+        }
+        Ok(())
+    }
 }
 
 impl Desk {
+    /// Whether what was being rendered is done, and whether the worker has anything to turn to.
+    pub fn state(&self) -> (bool, bool) {
+        (self.done, self.calls())
+    }
+
     /// Whether the worker has anything to turn to.
     pub fn calls(&self) -> bool {
         self.closed || !self.edits.is_empty() || self.built.is_some()
@@ -90,30 +105,15 @@ impl Shared {
         self.work.notify_all();
     }
 
-    /// Asks for a change; what is being rendered ends, unless it is a frame that is ready soon.
+    /// Asks for a change.
     pub fn edit(&self, edit: Edit) -> u64 {
-        let mut desk = self.desk();
-        desk.edits.push_back(edit);
-        desk.asked += 1;
-        if let Some(rendering) = &desk.rendering
-            && rendering.until.is_none_or(|until| until <= Instant::now())
-        {
-            rendering.control.cancel();
-        }
-        let asked = desk.asked;
-        drop(desk);
-        self.work.notify_all();
-        asked
-    }
-
-    /// Nobody holds the session any more.
-    pub fn close(&self) {
+        let mut asked = 0;
         self.tell(|desk| {
-            desk.closed = true;
-            if let Some(rendering) = &desk.rendering {
-                rendering.control.cancel();
-            }
+            desk.edits.push_back(edit);
+            desk.asked += 1;
+            asked = desk.asked;
         });
+        asked
     }
 
     /// The worker waits until `ready`, or for so long; forever without.

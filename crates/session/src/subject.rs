@@ -5,14 +5,17 @@ use crate::{Edit, Setting, Status, pose};
 use juggler::math::{Aabb, Ray, Vec2, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::kind::name_of;
-use juggler::scene::{Scene, SceneError, built_in_scenes};
+use juggler::scene::{Scene, SceneError, camera_json, with_camera};
 use juggler::tracer::camera::AnyCamera;
 use juggler::tracer::integrator::AnyIntegrator;
 use juggler::tracer::world::Vertex;
 use juggler::{Error, Picture, Settings, View};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Most pixels of a picture that is looked at: their samples are all held in memory.
+pub const MOST_PIXELS: u64 = 1 << 25;
 
 /// What is looked at.
 #[derive(Clone)]
@@ -58,8 +61,12 @@ pub struct Build {
     frame: f64,
     settings: Settings,
     size: Option<[u32; 2]>,
-    /// The camera where people moved it, and that of the file as it was then.
-    camera: Option<(AnyCamera, Option<AnyCamera>)>,
+    /// The camera where people moved it.
+    camera: Option<AnyCamera>,
+    /// Cameras that were kept in memory.
+    kept: Vec<(String, AnyCamera)>,
+    /// The subject as it was, whose world may be that of the new one.
+    before: Option<(Arc<Scene>, Arc<Picture>)>,
 }
 
 #[derive(Clone)]
@@ -72,11 +79,22 @@ enum Task {
     Have(Arc<Scene>),
 }
 
+/// Why there is no world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    /// As `juggler check` says it, without colours.
+    pub text: String,
+    /// The files that were read before it was found, as far as they are known.
+    pub files: Vec<PathBuf>,
+}
+
 impl Build {
     /// A scene file, or a built-in scene by name.
     pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
         let settings = Settings { size, ..Settings::default() };
-        Self { task: Task::Open, name: name.into(), values: Vec::new(), frame: 0.0, settings, size, camera: None }
+        let (values, kept) = (Vec::new(), Vec::new());
+        let (task, name) = (Task::Open, name.to_owned());
+        Self { task, name, values, frame: 0.0, settings, size, camera: None, kept, before: None }
     }
 
     /// A scene that a program made.
@@ -84,15 +102,21 @@ impl Build {
         Self { task: Task::Have(Arc::new(scene)), ..Self::open(name, size) }
     }
 
-    /// Reads and builds: takes its time, on the threads of the current rayon pool. The text of an error is that of
-    /// `juggler check`, without colours.
-    pub fn run(self) -> Result<Subject, String> {
-        self.build().map_err(|error| text_of(&error))
+    /// Reads and builds: takes its time, on the threads of the current rayon pool.
+    pub fn run(self) -> Result<Subject, Mistake> {
+        let name = PathBuf::from(&self.name);
+        self.build().map_err(|error| {
+            let mut files = vec![name];
+            if let Error::Scene(SceneError::Problems(problems)) = &error {
+                files.extend(problems.sources().names().map(PathBuf::from));
+            }
+            Mistake { text: text_of(&error), files }
+        })
     }
 
     fn build(mut self) -> Result<Subject, Error> {
         let file = match self.task.clone() {
-            Task::Open => Arc::new(open(&self.name)?),
+            Task::Open => Arc::new(Scene::named(&self.name)?),
             Task::Reload(scene) => self.reload(&scene)?,
             Task::Have(scene) => scene,
         };
@@ -103,43 +127,64 @@ impl Build {
         if self.frame != 0.0 {
             scene = Arc::new(scene.at_frame(self.frame)?);
         }
-        let mut picture = Picture::new(&scene, &self.settings)?;
+        let size = self.settings.size_of(&scene);
+        if bearable(size) != size {
+            self.settings.size = Some(bearable(size));
+        }
+        let mut picture = self.picture(&scene)?;
         let upward = picture.view().camera.upward();
-        let camera = self.camera.take().map(|(camera, _)| camera);
-        if let Some(camera) = &camera {
+        if let Some(camera) = &self.camera {
             picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
         }
-        let Self { name, values, frame, settings, size, .. } = self;
-        let (picture, interest, held, kept) = (Arc::new(picture), Vec3::ZERO, false, Vec::new());
+        let Self { name, values, frame, settings, size, camera, kept, .. } = self;
+        let (picture, interest, held) = (Arc::new(picture), Vec3::ZERO, false);
         let mut subject =
             Subject { name, file, scene, values, frame, settings, size, camera, kept, upward, interest, held, picture };
         subject.look_for_interest();
         Ok(subject)
     }
 
+    fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
+        match &self.before {
+            Some((before, picture)) if scene.has_world_of(before) => picture.again(scene, &self.settings),
+            _ => Picture::new(scene, &self.settings),
+        }
+    }
+
     /// The file again. What people changed stays, unless the file has changed there too.
     fn reload(&mut self, old: &Arc<Scene>) -> Result<Arc<Scene>, Error> {
-        let new = Arc::new(if Path::new(&self.name).is_file() { old.reload(&self.name)? } else { open(&self.name)? });
-        let [before, after] = [old, &new].map(|scene| scene.to_value());
-        self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));
-        let known = |name: &String| new.description.cameras.contains_key(name) || name == "camera";
-        self.settings.camera = self.settings.camera.take().filter(known);
-        let same = |path: &str| before.pointer(path) == after.pointer(path);
-        let chosen = self.settings.camera.clone();
-        if !(same("/camera")
-            && same("/render/camera")
-            && chosen.map_or(same("/cameras"), |name| same(&format!("/cameras/{name}"))))
-        {
-            self.camera = None;
+        let is_file = Path::new(&self.name).is_file();
+        let new = Arc::new(if is_file { old.reload(&self.name)? } else { Scene::named(&self.name)? });
+        if !self.values.is_empty() {
+            let [before, after] = [old, &new].map(|scene| scene.to_value());
+            self.values.retain(|(path, _)| before.pointer(path) == after.pointer(path));
+        }
+        let chosen = |settings: &Settings, scene: &Scene| chosen_camera(settings, scene).cloned();
+        if chosen(&self.settings, old) != chosen(&self.settings, &new) {
+            (self.camera, self.settings.camera) = (None, None);
         }
         Ok(new)
     }
 }
 
-/// A scene file, or a built-in scene by name.
-fn open(name: &str) -> Result<Scene, SceneError> {
-    let built_in = built_in_scenes().iter().any(|scene| scene.name == name);
-    if built_in && !Path::new(name).is_file() { Scene::built_in(name) } else { Scene::load(name) }
+/// The camera that is looked through first, when the scene says.
+fn chosen_camera<'s>(settings: &Settings, scene: &'s Scene) -> Option<&'s AnyCamera> {
+    let description = &scene.description;
+    let named = settings.camera.as_ref().or(description.render.camera.as_ref().map(|name| &name.0));
+    let several = &description.cameras;
+    let named = named.map(|name| several.get(name).or(description.camera.as_ref().filter(|_| name == "camera")));
+    named.unwrap_or_else(|| description.camera.as_ref().or_else(|| several.values().next()))
+}
+
+/// A size whose film can be held in memory, of the same shape.
+fn bearable([width, height]: [u32; 2]) -> [u32; 2] {
+    let pixels = u64::from(width) * u64::from(height);
+    let scale = (MOST_PIXELS as f64 / pixels.max(1) as f64).sqrt();
+    if pixels <= MOST_PIXELS {
+        [width, height]
+    } else {
+        [width, height].map(|edge| ((f64::from(edge) * scale) as u32).max(1))
+    }
 }
 
 /// As `juggler check` says it.
@@ -193,21 +238,14 @@ impl Subject {
 
     /// Cameras that were kept in memory, as the member `cameras` of a scene file.
     pub fn kept(&self) -> Value {
-        self.kept
-            .iter()
-            .map(|(name, camera)| (name.clone(), serde_json::to_value(camera).unwrap_or_default()))
-            .collect()
+        self.kept.iter().map(|(name, camera)| (name.clone(), camera_json(camera))).collect()
     }
 
     /// Changes what can be changed at once, and says what else is to be done. After an error nothing has changed. Edits
     /// that are not about the picture are ignored.
     pub fn apply(&mut self, edit: &Edit) -> Result<Change, String> {
         match edit {
-            Edit::Scene(name) => {
-                let size = self.settings.size.or(self.size);
-                let build = Build::open(name, size);
-                Ok(Change::Build(Build { size: self.size, ..build }))
-            }
+            Edit::Scene(name) => Ok(Change::Build(Build { size: self.size, ..Build::open(name, self.settings.size) })),
             Edit::Reload => Ok(Change::Build(self.build(Task::Reload(Arc::clone(&self.file))))),
             Edit::Reset => {
                 let settings = Settings { size: self.size, ..Settings::default() };
@@ -239,14 +277,25 @@ impl Subject {
         }
     }
 
-    /// Keeps the camera under a name.
+    /// Keeps the camera under a name, in memory.
     pub fn keep(&mut self, name: &str) {
         self.kept.retain(|(other, _)| other != name);
         self.kept.push((name.to_owned(), self.picture.view().camera));
     }
 
+    /// The text of the scene's file with the camera kept in it, when there is a file.
+    pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
+        let text = std::fs::read_to_string(Path::new(&self.name)).ok()?;
+        let kept = with_camera(&text, name, &self.picture.view().camera);
+        Some(kept.map_err(|error| format!("error: the camera cannot be kept in `{}`: {error}", self.name)))
+    }
+
+    /// The files that the scene was read from, and those of its meshes.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.file.paths()
+    }
+
     fn build(&self, task: Task) -> Build {
-        let of_file = self.file.description.camera.clone();
         Build {
             task,
             name: self.name.clone(),
@@ -254,13 +303,20 @@ impl Subject {
             frame: self.frame,
             settings: self.settings.clone(),
             size: self.size,
-            camera: self.camera.clone().map(|camera| (camera, of_file)),
+            camera: self.camera.clone(),
+            kept: self.kept.clone(),
+            before: Some((Arc::clone(&self.scene), Arc::clone(&self.picture))),
         }
     }
 
     fn set(&mut self, setting: &Setting) -> Result<Change, String> {
         let mut settings = self.settings.clone();
         match setting {
+            Setting::Size([width, height]) if u64::from(*width) * u64::from(*height) > MOST_PIXELS => {
+                return Err(format!(
+                    "error: {width} x {height} are more pixels than the limit of {MOST_PIXELS} for looking"
+                ));
+            }
             Setting::Size(size) => settings.size = Some(*size),
             Setting::Samples(samples) => settings.samples = Some(*samples),
             Setting::Integrator(name) => settings.integrator = Some(name.clone()),
@@ -275,8 +331,7 @@ impl Subject {
             settings.max_depth = None;
         }
         let (mut render, mut tone) = (self.scene.description.render.clone(), self.scene.description.tone.clone());
-        let wished = settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error));
-        wished?;
+        settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error))?;
         render.camera = self.picture.view().render.camera;
         self.see(View { camera: self.picture.view().camera, render, tone })?;
         self.settings = settings;
@@ -385,7 +440,7 @@ impl Subject {
         status.tone = name_of(&tone.curve);
         status.exposure = tone.exposure_stops;
         status.cameras = self.cameras();
-        status.camera = serde_json::to_value(&camera).unwrap_or_default();
+        status.camera = camera_json(&camera);
         status.interest = self.interest.to_array();
         status.extent = self.extent();
         status.frame = self.frame;

@@ -54,7 +54,7 @@ impl Painter {
             let scene = Scene::from_bundle(Bundle::from_iter(files), name);
             Build::of(scene.map_err(|error| text_of(&error.into()))?, name, None)
         };
-        let subject = build.run()?;
+        let subject = build.run().map_err(|mistake| mistake.text)?;
         let slices = Slices::new(subject.picture(), self.share);
         self.shown = Some(Shown { subject, slices });
         Ok(())
@@ -106,7 +106,7 @@ impl Painter {
 
 fn change(subject: &mut Subject, edit: &Edit) -> Result<(), String> {
     if let Change::Build(build) = subject.apply(edit)? {
-        *subject = build.run()?;
+        *subject = build.run().map_err(|mistake| mistake.text)?;
     }
     Ok(())
 }

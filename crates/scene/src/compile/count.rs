@@ -34,6 +34,13 @@ pub struct Count {
     pub is_shared: bool,
 }
 
+impl Count {
+    /// Objects that one placement makes.
+    pub fn objects(&self) -> u64 {
+        self.objects
+    }
+}
+
 /// All groups of a scene; each after those that it places.
 pub type Counts<'s> = IndexMap<&'s str, Count>;
 
@@ -132,7 +139,7 @@ impl<'s> Counter<'s> {
 }
 
 /// Shapes that an object is by itself.
-fn shapes(object: &Object) -> u64 {
+pub fn shapes(object: &Object) -> u64 {
     let mut count = u64::from(object.shape.is_some());
     if let Some(chain) = &object.chain {
         count = count.saturating_add(chain.count.into());

@@ -41,7 +41,7 @@ impl Library {
         Self { store, ..Self::default() }
     }
 
-    /// Where its files come from.
+    /// Where files come from.
     pub fn store(&self) -> &Store {
         &self.store
     }
@@ -50,9 +50,9 @@ impl Library {
     pub fn renewed(&self) -> Self {
         let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
         let entries = self.entries();
-        let entries = entries.iter().filter(|(path, entry)| same(path, entry));
-        let entries = entries.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
-        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(entries)) }
+        let kept = entries.iter().filter(|(path, entry)| same(path, entry));
+        let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)) }
     }
 
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 mod count;
 mod defaults;
+mod locate;
 mod materials;
 mod meshes;
 mod needs;
@@ -20,6 +21,7 @@ mod placing;
 mod settings;
 
 pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
+pub use locate::Part;
 pub use meshes::{Files, Library};
 pub use needs::Needs;
 pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
@@ -82,9 +84,21 @@ impl Assembly {
     }
 }
 
+/// How a scene looks at its world, which is there already: its cameras by name, the chosen one first.
+pub fn look_at(scene: &Description, world: &World) -> (Vec<(String, AnyCamera)>, Vec<Finding>) {
+    let mut findings = Vec::new();
+    settings::check(&scene.render, &mut findings);
+    let cameras = cameras(scene, &or_some(world.bounds()), &mut findings);
+    (cameras, findings)
+}
+
 /// A box around all objects that have an end.
 fn bounds(objects: &[Object]) -> Aabb {
-    let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+    or_some(objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union))
+}
+
+/// Some box where there is none.
+fn or_some(bounds: Aabb) -> Aabb {
     if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
 }
 

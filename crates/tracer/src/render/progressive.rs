@@ -208,8 +208,8 @@ impl<'f> Rounds<'f> {
             if let Some(Reverse((start, place, end))) = state.waiting.pop() {
                 state.begun += 1;
                 let now = end.min(start.saturating_add(most.max(1)));
+                let rest = Round { place, samples: now..end };
                 if !self.follows(now) {
-                    let rest = Round { place, samples: now..end };
                     let next = if now < end { Some(rest) } else { Round::after(self.film, self.stop, place, end) };
                     state.waiting.extend(next.map(|next| next.entry()));
                 }

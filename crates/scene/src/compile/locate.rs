@@ -1,0 +1,112 @@
+//! From a shape's number back to the place where it is described. Nothing is kept for it: objects are counted in the
+//! order in which they are placed.
+
+use super::count::{self, Counts};
+use crate::description::{Description, Object};
+use crate::kind::name_of;
+use crate::path::Path;
+use juggler_tracer::material::MaterialRef;
+
+/// Where a shape is described.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The object: `objects[3]`, or `groups.tree[2]` for one of a group.
+    pub path: String,
+    /// The kind of its shape; `sphere` for those of chains and limbs.
+    pub kind: String,
+    /// The material's name, or where it is described; `default` where nothing says.
+    pub material: String,
+}
+
+impl Part {
+    /// The shape `number` of a scene's world, as its vertices count.
+    pub fn of(scene: &Description, number: u32) -> Option<Self> {
+        let counts = count::count(scene).ok()?;
+        let search = Search { scene, counts };
+        search.among(&scene.objects, Path::root().key("objects"), u64::from(number), "default".into())
+    }
+}
+
+struct Search<'s> {
+    scene: &'s Description,
+    counts: Counts<'s>,
+}
+
+impl Search<'_> {
+    fn among(&self, objects: &[Object], at: Path, mut number: u64, inherited: String) -> Option<Part> {
+        for (i, object) in objects.iter().enumerate() {
+            let count = self.count(object);
+            if number < count {
+                return self.within(object, at.index(i), number, inherited);
+            }
+            number -= count;
+        }
+        None
+    }
+
+    fn count(&self, object: &Object) -> u64 {
+        let group = object.group.as_ref().and_then(|group| self.counts.get(group.0.as_str()));
+        let inner = object.objects.iter().flatten().map(|object| self.count(object));
+        count::shapes(object) + group.map_or(0, count::Count::objects) + inner.sum::<u64>()
+    }
+
+    fn within(&self, object: &Object, at: Path, number: u64, inherited: String) -> Option<Part> {
+        let material = match &object.material {
+            None => inherited,
+            Some(MaterialRef::Name(name)) => name.clone(),
+            Some(MaterialRef::Inline(_)) => at.key("material").to_string(),
+        };
+        if let Some(group) = &object.group {
+            let objects = self.scene.groups.get(&group.0)?;
+            return self.among(objects, Path::root().key("groups").key(group.0.as_str()), number, material);
+        }
+        if let Some(objects) = &object.objects {
+            return self.among(objects, at.key("objects"), number, material);
+        }
+        let kind = object.shape.as_ref().map_or_else(|| "sphere".into(), name_of);
+        Some(Part { path: at.to_string(), kind, material })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+
+    #[test]
+    fn shapes_are_found_in_the_order_of_the_world() {
+        let scene = r#"{
+            "version": 1,
+            "materials": {"red": {"phong": {}}, "blue": {"phong": {}}},
+            "groups": {
+                "pair": [{"shape": {"sphere": {}}}, {"shape": {"cuboid": {}}, "material": {"phong": {}}}],
+                "two": [{"group": "pair", "material": "blue"}, {"group": "pair"}]
+            },
+            "objects": [
+                {"shape": {"plane": {}}},
+                {"group": "two", "material": "red"},
+                {"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [9, 0, 0], "radius": 1}, "count": 3}},
+                {"objects": [{"shape": {"disk": {}}, "material": "blue"}]}
+            ]
+        }"#;
+        let scene = Scene::from_json(scene, "test.json").unwrap();
+        let shapes = scene.compile().unwrap().world.geometry().shapes as u32;
+        let parts: Vec<[String; 3]> = (0..shapes)
+            .map(|number| Part::of(&scene.description, number).unwrap())
+            .map(|part| [part.path, part.kind, part.material])
+            .collect();
+        let expected = [
+            ["objects[0]", "plane", "default"],
+            ["groups.pair[0]", "sphere", "blue"],
+            ["groups.pair[1]", "cuboid", "groups.pair[1].material"],
+            ["groups.pair[0]", "sphere", "red"],
+            ["groups.pair[1]", "cuboid", "groups.pair[1].material"],
+            ["objects[2]", "sphere", "default"],
+            ["objects[2]", "sphere", "default"],
+            ["objects[2]", "sphere", "default"],
+            ["objects[3].objects[0]", "disk", "blue"],
+        ];
+        assert_eq!(parts, expected);
+        assert_eq!(Part::of(&scene.description, shapes), None);
+    }
+}
