@@ -18,7 +18,7 @@ fi
 cargo build --release --locked --manifest-path bindgen/Cargo.toml --target-dir "$built/bindgen"
 
 [ -z "$linker" ] || export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER="$linker"
-RUSTC=$rustc RUSTFLAGS="-C target-feature=+simd128 -C link-arg=-zstack-size=4194304" \
+RUSTC=$rustc RUSTFLAGS="-C target-feature=+simd128" \
   cargo build --locked --manifest-path ../Cargo.toml -p juggler-web --lib --profile web --target "$target" --target-dir "$built"
 
 rm -rf dist.new
