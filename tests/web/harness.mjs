@@ -1,0 +1,131 @@
+// A file server, the program to compare with, a browser, and what tests ask of them.
+
+import { spawnSync } from "node:child_process";
+import { strict as assert } from "node:assert";
+import { createServer } from "node:http";
+import { mkdtempSync, readFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { extname, join, normalize } from "node:path";
+import { chromium } from "playwright-core";
+
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
+/** Milliseconds that anything may take. */
+const PATIENCE = 180_000;
+
+/** Serves a folder as it is, without a header of its own but the type. */
+export async function serve(folder) {
+  const server = createServer(({ url }, answer) => {
+    const path = normalize(decodeURIComponent(new URL(url, "http://x").pathname)).replace(/\/$/, "/index.html");
+    try {
+      const bytes = readFileSync(join(folder, path));
+      answer.writeHead(200, { "content-type": TYPES[extname(path)] ?? "application/octet-stream" }).end(bytes);
+    } catch {
+      answer.writeHead(404).end();
+    }
+  });
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  return { url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
+}
+
+/** The program. */
+export class Program {
+  constructor(path) {
+    this.path = path;
+    this.folder = mkdtempSync(join(tmpdir(), "juggler-web-"));
+    this.picture = join(this.folder, "picture.png");
+  }
+
+  run(...words) {
+    return spawnSync(this.path, words, { encoding: "utf8", env: { ...process.env, NO_COLOR: "1" } });
+  }
+
+  /** Makes a picture; the hash of its film. */
+  render(scene, ...words) {
+    const stats = join(this.folder, "stats.json");
+    const { status, stderr } = this.run("render", scene, "-o", this.picture, "--stats", stats, ...words);
+    assert.equal(status, 0, stderr);
+    return JSON.parse(readFileSync(stats)).film;
+  }
+}
+
+/** A browser with one page, and all that goes wrong in it. */
+export class Browser {
+  static async start(executablePath, pictures) {
+    const args = ["--no-sandbox", "--disable-dev-shm-usage", "--force-color-profile=srgb"];
+    const self = new Browser();
+    self.browser = await chromium.launch({ executablePath, args });
+    Object.assign(self, { pictures, faults: [] });
+    return self;
+  }
+
+  async open(url, options = {}) {
+    await this.context?.close();
+    this.context = await this.browser.newContext({ viewport: { width: 1200, height: 760 }, acceptDownloads: true, ...options });
+    this.page = await this.context.newPage();
+    this.page.setDefaultTimeout(PATIENCE);
+    this.page.on("pageerror", (error) => this.faults.push(String(error)));
+    this.page.on("console", (message) => message.type() === "error" && this.faults.push(message.text()));
+    await this.page.goto(url);
+    await this.page.waitForFunction(() => document.getElementById("size").textContent.length > 0);
+  }
+
+  text(selector) {
+    return this.page.locator(selector).textContent();
+  }
+
+  /** The hash of the finished picture. */
+  async hash() {
+    await this.page.waitForFunction(() => document.getElementById("hash").textContent.length === 64, null, { timeout: PATIENCE });
+    return this.text("#hash");
+  }
+
+  async seconds() {
+    await this.hash();
+    return Number.parseFloat(await this.text("#seconds"));
+  }
+
+  async samples(count) {
+    await this.page.fill("#wanted", String(count));
+    await this.page.press("#wanted", "Enter");
+    await this.page.locator("#picture").focus();
+    await this.page.waitForFunction((count) => document.getElementById("samples").textContent.endsWith(` of ${count}`), count);
+  }
+
+  async workers(count) {
+    await this.page.evaluate((count) => {
+      const slider = document.getElementById("workers");
+      slider.value = count;
+      slider.dispatchEvent(new Event("change"));
+    }, count);
+  }
+
+  /** Drops files, as { name: text }, on the page. */
+  async drop(files) {
+    await this.page.evaluate((files) => {
+      const dataTransfer = new DataTransfer();
+      for (const [name, text] of Object.entries(files)) dataTransfer.items.add(new File([text], name));
+      window.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+    }, files);
+  }
+
+  /** The picture in 16 by 16 fields, as numbers from 0 to 255. */
+  fields() {
+    return this.page.evaluate(() => {
+      const small = new OffscreenCanvas(16, 16).getContext("2d");
+      small.drawImage(document.getElementById("picture"), 0, 0, 16, 16);
+      return [...small.getImageData(0, 0, 16, 16).data];
+    });
+  }
+
+  screenshot(name) {
+    return this.page.screenshot({ path: join(this.pictures, `${name}.png`) });
+  }
+}
+
+/** How different two pictures are, 0 to 255. */
+export function difference(one, other) {
+  return one.reduce((sum, value, index) => sum + Math.abs(value - other[index]), 0) / one.length;
+}
+
+export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
+export const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));

@@ -1,0 +1,44 @@
+// Files that people drop or choose: a scene and what it names.
+
+/** Largest sum of files, in bytes. */
+const MOST = 1 << 30;
+
+/** All files of a drop, folders included, as { name, file }: names have the folders that were dropped before them. */
+export async function dropped(transfer) {
+  const files = [];
+  // The items themselves are gone as soon as anything is waited for.
+  const entries = [...transfer.items].filter(({ kind }) => kind === "file").map((item) => {
+    const entry = item.webkitGetAsEntry?.();
+    if (!entry) files.push(...chosen([item.getAsFile()]));
+    return entry;
+  });
+  for (const entry of entries.filter(Boolean)) await walk(entry, files);
+  return files;
+}
+
+async function walk(entry, files) {
+  if (entry.isFile) {
+    const file = await new Promise((done, failed) => entry.file(done, failed));
+    files.push({ name: entry.fullPath.replace(/^\//, ""), file });
+    return;
+  }
+  const reader = entry.createReader();
+  for (;;) {
+    const some = await new Promise((done, failed) => reader.readEntries(done, failed));
+    if (some.length === 0) return;
+    for (const child of some) await walk(child, files);
+  }
+}
+
+export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, file }));
+
+/** The scene among the files, the one in the fewest folders, and the bytes of all of them. */
+export async function scene(files) {
+  const depth = ({ name }) => name.split("/").length;
+  const scenes = files.filter(({ name }) => name.toLowerCase().endsWith(".json")).sort((a, b) => depth(a) - depth(b));
+  if (scenes.length === 0) throw new Error("there is no scene among the files: its name ends in .json");
+  const sum = files.reduce((bytes, { file }) => bytes + file.size, 0);
+  if (sum > MOST) throw new Error(`the files have ${Math.round(sum / 2 ** 20)} MiB; the page takes up to 1024`);
+  const bytes = await Promise.all(files.map(({ file }) => file.arrayBuffer()));
+  return { name: scenes[0].name, files: files.map(({ name }, i) => ({ name, bytes: bytes[i] })) };
+}

@@ -1,0 +1,97 @@
+// The workers: what one is told, all are told, so that all have the same scene from the same camera.
+
+import { Pace } from "./juggler.js";
+
+/** Seconds that a coarse frame may take. */
+const BUDGET = 0.03;
+
+export class Pool {
+  /** `news` is called with ("opened", status), ("frame", answer), ("tiles", message), ("failed", text). */
+  constructor(module, count, news) {
+    this.news = news;
+    this.number = 0;
+    this.pace = new Pace();
+    /** Of the picture, as soon as there is one. */
+    this.size = null;
+    this.waiting = [];
+    this.busy = null;
+    /** Whether a worker can go on no more: only another pool helps. */
+    this.lost = false;
+    this.workers = Array.from({ length: count }, (_, index) => {
+      const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+      worker.onmessage = ({ data }) => this.heard(index, data);
+      worker.onerror = (event) => this.news("failed", event.message ?? "a worker has failed");
+      worker.postMessage({ type: "start", module, index, of: count });
+      return worker;
+    });
+  }
+
+  close() {
+    this.workers.forEach((worker) => worker.terminate());
+    this.pace.free();
+    this.news = () => {};
+  }
+
+  tell(message) {
+    this.number += 1;
+    this.busy = { ...message, number: this.number, answers: [], tiles: [], late: [] };
+    this.workers.forEach((worker) => worker.postMessage({ ...message, number: this.number }));
+  }
+
+  /** Opens a scene; the edits of its `log` are made at once. */
+  open({ name, files, log }) {
+    this.waiting = [...log];
+    this.tell({ type: "open", name, files });
+  }
+
+  /** Asks for changes. While a frame is on its way they wait for each other, so that no worker falls behind. */
+  edit(...edits) {
+    this.waiting.push(...edits);
+    if (!this.busy && this.size) this.flush();
+  }
+
+  flush() {
+    const edits = this.waiting;
+    this.waiting = [];
+    const step = this.pace.coarseness(...this.size, BUDGET);
+    this.tell({ type: "edit", edits, coarse: this.size.map((edge) => Math.ceil(edge / step)) });
+  }
+
+  heard(index, message) {
+    // Tiles on their way when an edit was made count when it turns out that it leaves the samples as they are.
+    if (message.type === "tiles" && this.busy && message.number === this.number - 1) this.busy.late.push(message);
+    if (message.number !== this.number || message.type === "ready") return;
+    if (message.type === "tiles") {
+      // What comes before the coarse frame is whole has to wait, or that would cover it.
+      if (this.busy) this.busy.tiles.push(message);
+      else this.news("tiles", message);
+      return;
+    }
+    if (message.type === "failed") {
+      this.busy = null;
+      this.lost ||= message.lost;
+      this.news("failed", message.text);
+      return;
+    }
+    if (!this.busy) return;
+    this.busy.answers[index] = message;
+    if (this.busy.answers.filter(Boolean).length === this.workers.length) this.answered();
+  }
+
+  answered() {
+    const { type, answers, tiles, late, coarse } = this.busy;
+    const { status, error, kept } = answers[0];
+    this.busy = null;
+    this.size = status.outline.size;
+    if (type === "open") {
+      this.news("opened", status);
+      this.flush();
+      return;
+    }
+    const slowest = Math.max(...answers.map(({ took }) => took));
+    if (!kept) this.pace.learn(coarse[0] * coarse[1], slowest / 1000);
+    this.news("frame", { status, error, kept, coarse, patches: answers });
+    (kept ? [...late, ...tiles] : tiles).forEach((message) => this.news("tiles", message));
+    if (this.waiting.length > 0) this.flush();
+  }
+}

@@ -1,0 +1,81 @@
+#!/bin/sh
+# Prints the `rustc` that compiles for wasm32-unknown-unknown, and the linker for it (empty: the compiler's own).
+# Where rustup has the target, that is rustup's. Otherwise Debian's `rustc-web` is unpacked into a folder of its own and
+# its standard library is built once; nothing is installed, and no right to do so is needed.
+set -eu
+
+target=wasm32-unknown-unknown
+if [ -d "$(rustc --print sysroot)/lib/rustlib/$target/lib" ]; then
+  rustup which rustc 2> /dev/null || command -v rustc
+  echo
+  exit
+fi
+if ! apt-cache show rustc-web > /dev/null 2>&1; then
+  echo "no $target here: install it (rustup target add $target)," >&2
+  echo "or build on a Debian that has rustc-web, after apt-get update" >&2
+  exit 1
+fi
+
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/juggler-web
+version=$(apt-cache policy rustc-web | sed -n 's/ *Candidate: //p')
+prefix=$cache/rustc-$version
+lock=$cache/lock
+mkdir -p "$cache"
+# One at a time; a second caller finds the work done.
+exec 9> "$lock"
+flock 9
+
+# The packages that would be installed if that were wanted: what is here already is left out.
+packages() {
+  apt-get install -s --no-install-recommends rustc-web libstd-rust-web-dev rust-web-src lld-19 |
+    sed -n 's/^Inst \([^ ]*\).*/\1/p'
+}
+
+unpack() {
+  rm -rf "$prefix.new"
+  mkdir -p "$prefix.new/debs"
+  (
+    cd "$prefix.new/debs"
+    # shellcheck disable=SC2046
+    apt-get -q download $(packages)
+    for file in *.deb; do dpkg -x "$file" ..; done
+  ) >&2
+  rm -rf "$prefix.new/debs"
+  mv "$prefix.new" "$prefix"
+}
+
+wrapper() { # name, program
+  {
+    echo '#!/bin/sh'
+    echo "export LD_LIBRARY_PATH=$prefix/usr/lib/$(uname -m)-linux-gnu"
+    echo "exec $prefix/$2 \"\$@\""
+  } > "$prefix/$1"
+  chmod +x "$prefix/$1"
+}
+
+# An empty crate built with `build-std` leaves the libraries of std; where the compiler looks for them, they serve as if
+# they had come with it.
+standard_library() {
+  crate=$(mktemp -d)
+  mkdir "$crate/src"
+  printf '[package]\nname = "empty"\nedition = "2024"\n[workspace]\n' > "$crate/Cargo.toml"
+  : > "$crate/src/lib.rs"
+  (
+    cd "$crate"
+    RUSTC=$prefix/rustc RUSTC_BOOTSTRAP=1 CARGO_TARGET_DIR=$crate/target RUSTFLAGS= \
+      cargo build --release -Z build-std=std,panic_abort --target "$target"
+  ) >&2
+  libraries=$prefix/usr/lib/rustlib/$target/lib
+  mkdir -p "$libraries.new"
+  cp "$crate/target/$target"/release/deps/lib*.rlib "$libraries.new"
+  rm -f "$libraries.new"/libempty-*
+  mv "$libraries.new" "$libraries"
+  rm -rf "$crate"
+}
+
+[ -d "$prefix" ] || unpack
+wrapper rustc usr/bin/rustc
+wrapper wasm-ld usr/lib/llvm-19/bin/wasm-ld
+[ -d "$prefix/usr/lib/rustlib/$target/lib" ] || standard_library
+echo "$prefix/rustc"
+echo "$prefix/wasm-ld"
