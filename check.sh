@@ -2,18 +2,41 @@
 # Everything that must hold before a change lands; CI runs exactly this. Cheap checks first.
 #   ./check.sh            all of it
 #   ./check.sh quick      without the release build
+#   ./check.sh --web      instead, the page that renders in the browser alone (web/build.sh): built, driven in Chromium, not in CI
 #   ./check.sh --cluster  instead, the commands of docs/cluster.md on a small Slurm of its own: as root, some minutes, not in CI
 set -euo pipefail
 cd "$(dirname "$0")"
 mode=${1:-all}
-case "$mode" in all | quick | --cluster) ;; *) echo "usage: ./check.sh [quick | --cluster]" >&2; exit 2 ;; esac
+case "$mode" in all | quick | --web | --cluster) ;; *) echo "usage: ./check.sh [quick | --web | --cluster]" >&2; exit 2 ;; esac
 
 step() { printf '\n== %s\n' "$*"; }
+
+programs=${CARGO_TARGET_DIR:-target}
+
+# Runs a test that drives a program from outside, where its tools are there.
+drive() {
+  local test=$1 packages=$2 tool
+  shift 2
+  for tool in "$@"; do
+    if ! command -v "$tool" >/dev/null; then
+      echo "$tool is not installed: skipped (apt-get install $packages)"
+      return
+    fi
+  done
+  "$test" "$programs/debug/juggler"
+}
+
+if [ "$mode" = --web ]; then
+  step "tests: the page that renders in the browser alone"
+  cargo build --locked -p juggler-cli
+  web/build.sh
+  exec tests/web/test.sh "$programs/debug/juggler"
+fi
 
 if [ "$mode" = --cluster ]; then
   step "tests: the commands of docs/cluster.md"
   cargo build --release --locked -p juggler-cli
-  exec tests/cluster/test.sh "${CARGO_TARGET_DIR:-target}/release/juggler"
+  exec tests/cluster/test.sh "$programs/release/juggler"
 fi
 
 step "spelling"
@@ -30,6 +53,12 @@ RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
 
 step "tests: units, contracts, hostile input, tree, licences, schema, documentation"
 cargo test --workspace --locked
+
+step "tests: the window of juggler view, with keys and mouse"
+drive tests/viewer/test.sh "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
+
+step "tests: the page of juggler serve, in Chromium"
+drive tests/browser/test.sh "chromium nodejs npm" chromium node npm
 
 if [ "$mode" = all ]; then
   step "tests: pictures and hashes again, optimised: debug and release must agree to the bit"
