@@ -43,6 +43,14 @@ fn replace(file: &Path, text: &str) {
     fs::rename(beside, file).unwrap();
 }
 
+/// How long a change takes to be shown.
+fn time(session: &Session, change: &dyn Fn(), what: &dyn Fn(&Status) -> bool) -> Duration {
+    let begin = Instant::now();
+    change();
+    until(session, what);
+    begin.elapsed()
+}
+
 const TRIANGLE: &str = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
 
 #[test]
@@ -60,13 +68,7 @@ fn saved_edits_show_at_once_and_mistakes_leave_the_picture() {
     let moved = until(&session, |status| status.hash.is_some() && status.hash != first.hash);
 
     let mut times = Vec::new();
-    let mut timed = |change: &dyn Fn(), what: &dyn Fn(&Status) -> bool| {
-        let begin = Instant::now();
-        change();
-        let status = until(&session, |status| what(status));
-        times.push(begin.elapsed());
-        status
-    };
+    let mut timed = |change: &dyn Fn(), what: &dyn Fn(&Status) -> bool| times.push(time(&session, change, what));
     timed(&|| replace(&file, &scene(include, 3)), &|status| status.samples_wanted == 3 && status.hash.is_some());
     assert_eq!(session.status().camera, moved.camera, "where one flew, one stays");
     let before = until(&session, |status| status.hash.is_some());
