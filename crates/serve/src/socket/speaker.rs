@@ -132,7 +132,7 @@ impl Speaker {
             self.picture(frame, if moving { Kind::Moving } else { Kind::Refining }).await?;
         }
         let exact = self.sent == Some((frame.number, Kind::Exact));
-        let finished = status.stage == Stage::Finished && status.revision == frame.revision;
+        let finished = status.stage == Stage::Finished;
         if exact || !finished || (on_the_way > 0 && !new) {
             return Ok(None);
         }
