@@ -166,7 +166,7 @@ async function fitsAPhone() {
 async function twoAreFaster() {
   const scene = "cornell-cube";
   await browser.open(`${site.url}?scene=${scene}`);
-  await browser.samples(48);
+  await browser.samples(12);
   await browser.hash();
   const times = { 1: [], 2: [] };
   let gain = 0;

@@ -131,7 +131,7 @@ fn report(subject: &Subject) -> Report {
         extent: subject.extent(),
         frame: subject.frame(),
         frames: animation.as_ref().map_or(0, |animation| animation.frames),
-        frame_rate: animation.map_or(0.0, |animation| f64::from(animation.frames_per_second)),
+        frame_rate: animation.map_or(0.0, |animation| animation.frames_per_second),
     }
 }
 
@@ -192,15 +192,15 @@ mod tests {
         let whole = {
             let mut single = opened(0, 1);
             single.edit(r#"[{"setting": {"samples": 5}}, {"fly": {"forward": 0.5}}, {"zoom": 1.5}]"#).unwrap();
-            last_of(rendered(&mut single))
+            last_of(&rendered(&mut single))
         };
-        let parts: Vec<_> = painters.iter_mut().flat_map(|painter| last_of(rendered(painter))).collect();
+        let parts: Vec<_> = painters.iter_mut().flat_map(|painter| last_of(&rendered(painter))).collect();
         let parts: std::collections::BTreeMap<_, _> = parts.into_iter().collect();
         assert_eq!(parts, whole);
     }
 
     /// The newest state of each tile.
-    fn last_of(rendered: Vec<Patches>) -> std::collections::BTreeMap<[u32; 2], (u32, Vec<u32>)> {
+    fn last_of(rendered: &[Patches]) -> std::collections::BTreeMap<[u32; 2], (u32, Vec<u32>)> {
         let tiles = rendered.iter().flat_map(|patches| patches.iter());
         let bits = |light: &[f32]| light.iter().map(|value| value.to_bits()).collect();
         tiles.map(|(pixels, samples, light)| ([pixels.x, pixels.y], (samples, bits(light)))).collect()
