@@ -1,6 +1,6 @@
 //! Every key and every gesture in one table: the input acts by it, the help shows it.
 
-use eframe::egui::{InputState, Key};
+use eframe::egui::{Event, InputState, Key, Modifiers};
 
 /// What keys do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,37 +195,43 @@ fn bindings() -> impl Iterator<Item = &'static Binding> {
 }
 
 impl With {
-    fn holds(self, input: &InputState) -> bool {
-        input.modifiers.command == (self == Self::Control)
+    fn holds(self, modifiers: Modifiers) -> bool {
+        modifiers.command == (self == Self::Control)
     }
 }
 
 /// The motions whose keys are held.
 pub fn held(input: &InputState) -> Vec<Motion> {
-    let down = bindings().filter(|row| row.with.holds(input) && row.keys.iter().any(|key| input.key_down(*key)));
-    let motions = down.filter_map(|row| match row.action {
+    let holds = |row: &&Binding| row.with.holds(input.modifiers) && row.keys.iter().any(|key| input.key_down(*key));
+    let motions = bindings().filter(holds).filter_map(|row| match row.action {
         Action::Hold(motion) => Some(motion),
         Action::Press(_) => None,
     });
     motions.collect()
 }
 
-/// What was asked for since the last look, each press once, in the order of the table.
+/// What was asked for since the last look. A press counts with the modifiers that it came with, and once however long it
+/// lasts.
 pub fn pressed(input: &InputState) -> Vec<Command> {
-    let mut commands = Vec::new();
-    for row in bindings().filter(|row| row.with.holds(input)) {
-        if let Action::Press(command) = row.action {
-            let times: usize = row.keys.iter().map(|key| input.num_presses(*key)).sum();
-            commands.extend(std::iter::repeat_n(command, times));
-        }
+    let presses = input.events.iter().filter_map(|event| match event {
+        Event::Key { key, pressed: true, repeat: false, modifiers, .. } => Some((*key, *modifiers)),
+        _ => None,
+    });
+    presses.filter_map(|(key, modifiers)| command(key, modifiers)).collect()
+}
+
+fn command(key: Key, modifiers: Modifiers) -> Option<Command> {
+    let row = bindings().find(|row| row.with.holds(modifiers) && row.keys.contains(&key))?;
+    match row.action {
+        Action::Press(command) => Some(command),
+        Action::Hold(_) => None,
     }
-    commands
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::{Event, Modifiers, RawInput};
+    use eframe::egui::RawInput;
     use std::collections::HashSet;
 
     /// What egui makes of keys that go down.
@@ -234,9 +240,10 @@ mod tests {
         let event = |key: &Key| Event::Key { key: *key, physical_key: None, pressed: true, repeat: false, modifiers };
         let events = keys.iter().map(event).chain([Event::ModifiersChanged(modifiers)]).collect();
         let mut seen = InputState::default();
-        let _ = context.run_ui(RawInput { events, ..RawInput::default() }, |ui| {
+        let mut output = context.run_ui(RawInput { events, ..RawInput::default() }, |ui| {
             seen = ui.input(Clone::clone);
         });
+        output.textures_delta.clear();
         seen
     }
 

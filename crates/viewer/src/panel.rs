@@ -99,7 +99,7 @@ impl Panel {
         });
         let cameras = &around.status.cameras;
         if !cameras.is_empty() {
-            let chosen = row(ui, "go to", |ui| choice(ui, "camera", "", cameras));
+            let chosen = row(ui, "go to", |ui| choice(ui, "camera", "a camera", cameras));
             around.edits.extend(chosen.map(Edit::Camera));
         }
         row(ui, "keep as", |ui| {
