@@ -45,7 +45,7 @@ pub enum ViewerError {
 }
 
 /// What a window is opened with.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Whether it begins with the choice of scenes.
     pub choose: bool,

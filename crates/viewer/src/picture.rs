@@ -103,8 +103,12 @@ pub struct Screen {
 impl Screen {
     /// Takes over a frame unless it is there already; whether it was new.
     pub fn take(&mut self, context: &Context, frame: &Frame, scale: f32, still: bool) -> bool {
-        let coarse = frame.samples == 0.0;
-        let options = filter(scale, coarse, still);
+        let pixels = match (frame.samples == 0.0, still) {
+            (true, _) => Pixels::Coarse,
+            (false, false) => Pixels::Passing,
+            (false, true) => Pixels::Finished,
+        };
+        let options = filter(scale, pixels);
         let new = self.frame != frame.number || self.texture.is_none();
         if !new && options == self.options {
             return false;
@@ -128,11 +132,22 @@ impl Screen {
     }
 }
 
+/// What a frame's pixels are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pixels {
+    /// Fewer than the picture has.
+    Coarse,
+    /// Those of the picture, soon to be replaced by the next.
+    Passing,
+    /// Those of a picture that stays.
+    Finished,
+}
+
 /// How pixels are made larger or smaller: finished ones stay squares, coarse ones flow into each other.
-fn filter(scale: f32, coarse: bool, still: bool) -> TextureOptions {
-    let square = !coarse && (scale >= 2.0 || scale == 1.0);
+fn filter(scale: f32, pixels: Pixels) -> TextureOptions {
+    let square = pixels != Pixels::Coarse && (scale >= 2.0 || scale == 1.0);
     let magnification = if square { TextureFilter::Nearest } else { TextureFilter::Linear };
-    let mipmap_mode = (scale < 0.6 && still && !coarse).then_some(TextureFilter::Linear);
+    let mipmap_mode = (scale < 0.6 && pixels == Pixels::Finished).then_some(TextureFilter::Linear);
     TextureOptions { magnification, mipmap_mode, ..TextureOptions::LINEAR }
 }
 
@@ -210,9 +225,10 @@ mod tests {
 
     #[test]
     fn pixels_are_squares_only_when_they_are_finished() {
-        assert_eq!(filter(3.0, false, true).magnification, TextureFilter::Nearest);
-        assert_eq!(filter(3.0, true, false).magnification, TextureFilter::Linear);
-        assert_eq!(filter(1.5, false, true).magnification, TextureFilter::Linear);
-        assert!(filter(0.3, false, true).mipmap_mode.is_some() && filter(0.3, false, false).mipmap_mode.is_none());
+        assert_eq!(filter(3.0, Pixels::Finished).magnification, TextureFilter::Nearest);
+        assert_eq!(filter(3.0, Pixels::Coarse).magnification, TextureFilter::Linear);
+        assert_eq!(filter(1.5, Pixels::Finished).magnification, TextureFilter::Linear);
+        assert!(filter(0.3, Pixels::Finished).mipmap_mode.is_some());
+        assert!(filter(0.3, Pixels::Passing).mipmap_mode.is_none());
     }
 }
