@@ -242,7 +242,7 @@ impl Worker {
             if let Err(error) = self.apply(&edit) {
                 self.status.error = Some(error);
                 self.publish(None);
-            } else if !self.moved && self.building.is_none() {
+            } else if !self.moved && !self.retoned && self.building.is_none() {
                 self.publish(None);
             }
         }

@@ -285,7 +285,7 @@ mod tests {
         assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
         assert_eq!(short_round_after(70), 80, "within a round, to its end");
         assert_eq!([0, 70, 255, 256].map(long_round_after), [256, 256, 256, 512]);
-        assert_eq!([0, 1, 2, 4, 16, 70].map(even_round_after), [1, 4, 4, 16, 32, 96]);
+        assert_eq!([0, 1, 2, 4, 16, 70].map(even_round_after), [1, 4, 4, 16, 32, 80]);
     }
 
     #[test]
