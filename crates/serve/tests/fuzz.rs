@@ -1,4 +1,5 @@
 //! Messages that mean nothing: refused, and no memory is kept for them. Alone in its process, for that is measured.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
 
 mod common;
 

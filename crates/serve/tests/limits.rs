@@ -1,4 +1,5 @@
 //! How much of anything there may be: one test for each limit. What is too much is refused, and the server goes on.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! What a page sees and may do.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test fails by panicking
 
 mod common;
 

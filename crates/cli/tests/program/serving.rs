@@ -12,7 +12,7 @@ fn start(folder: &Folder, line: &str) -> (Child, String) {
     let mut child = folder.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut first = String::new();
     BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut first).unwrap();
-    let url = first.trim().strip_prefix("juggler serves at http://").expect("an address").to_owned();
+    let url = first.trim().strip_prefix("juggler serves at http://").unwrap().to_owned();
     (child, url)
 }
 
