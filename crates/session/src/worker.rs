@@ -176,7 +176,12 @@ impl Worker {
                     files: Vec::new(),
                 })
             });
-            shared.tell(|desk| desk.built = Some((number, result)));
+            shared.tell(|desk| {
+                // One that was overtaken may end last.
+                if desk.built.as_ref().is_none_or(|(newest, _)| *newest < number) {
+                    desk.built = Some((number, result));
+                }
+            });
         });
     }
 
