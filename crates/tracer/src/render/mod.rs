@@ -13,6 +13,7 @@ use std::ops::Range;
 mod control;
 mod expose;
 mod progressive;
+mod rounds;
 mod schedule;
 mod wavefront;
 
@@ -20,7 +21,8 @@ mod wavefront;
 mod tests;
 
 pub use control::{Control, Rays};
-pub use progressive::{Exposure, Hand, Stop, expose, is_finished, most_runs};
+pub use progressive::{Exposure, Hand, expose, is_finished, most_runs};
+pub use rounds::Stop;
 pub use schedule::{BAND_PIXELS, Schedule, Scheduler, Stopped, band_bytes, render};
 
 /// What a thread, a pass or a machine is given.

@@ -2,32 +2,11 @@
 //! gone on with. Nothing here can change a bit of the picture: which samples a tile gets follows from the rule and
 //! from its own samples alone.
 
+use super::rounds::{Begun, Round, Rounds, Stop, short_round_after};
 use super::wavefront::Engine;
-use super::{Control, Job, Stopped, Work};
-use crate::film::{BLOCK, Film, runs};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use super::{Control, Job, Stopped};
+use crate::film::{Film, runs};
 use std::ops::Range;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-
-/// Fewest samples from which noise is told.
-const LEAST_FOR_NOISE: u32 = 4 * BLOCK;
-/// Most samples of a pixel in a round.
-const LONGEST_ROUND: u32 = 16 * BLOCK;
-
-/// When a tile has enough samples. In any case it gets no more than the film wants.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Stop {
-    /// When it has as many as the film wants, in long rounds: the rays of many samples of a pixel go similar ways.
-    #[default]
-    Samples,
-    /// The same in short rounds, the first of 1 and 4 samples, so that all tiles grow evenly: for a film that somebody
-    /// looks at, or ends early.
-    Evenly,
-    /// When the root mean square of its pixels' relative errors is at most this level, looked at after fixed
-    /// numbers of samples: 64, 80, 96, 112, 128, 160, 192, 224, 256 and so on.
-    Noise(f32),
-}
 
 /// Exposes `film` on the threads of the current rayon pool until every tile has enough, or until
 /// [`Control::finish`]: then what is begun is done, and the rest left. When cancelled, what is begun is lost. `film` may
@@ -70,10 +49,8 @@ impl Hand<'_> {
     /// Exposes the next tile, by no more than `most` samples a pixel, and returns its place. `None` when all tiles have
     /// enough or `control` says that it is to end. Waits only for other hands.
     pub fn step(&mut self, most: u32, control: &Control) -> Option<usize> {
-        let round = self.rounds.next(most, control)?;
-        round.render(self.rounds.film, &mut self.engine, control);
-        self.rounds.done(&round);
-        Some(round.place)
+        let begun = Begun::next(self.rounds, most, control)?;
+        Some(begun.render(&mut self.engine, control))
     }
 }
 
@@ -90,157 +67,9 @@ pub fn most_runs(wanted: &Range<u32>) -> usize {
     ends.map(|end| runs(wanted.start..end).len()).max().unwrap_or(0)
 }
 
-/// Some samples of one tile.
-struct Round {
-    place: usize,
-    samples: Range<u32>,
-}
-
-impl Round {
-    /// The next samples of the tile at `place`, those before `from` being given to somebody already.
-    fn after(film: &Film, stop: Stop, place: usize, from: u32) -> Option<Self> {
-        let tile = film.tile(place)?;
-        let wanted = film.wanted(place).iter().filter(|wanted| wanted.end > from);
-        let missing = wanted.into_iter().find_map(|wanted| tile.missing(wanted.start.max(from)..wanted.end))?;
-        if let Stop::Noise(level) = stop
-            && is_round(missing.start)
-            && missing.start >= LEAST_FOR_NOISE
-            && tile.relative_variance().is_some_and(|square| square <= f64::from(level) * f64::from(level))
-        {
-            return None;
-        }
-        let round_after = match stop {
-            Stop::Samples => long_round_after,
-            Stop::Evenly => even_round_after,
-            Stop::Noise(_) => short_round_after,
-        };
-        let end = missing.end.min(round_after(missing.start));
-        Some(Self { place, samples: missing.start..end })
-    }
-
-    fn render(&self, film: &Film, engine: &mut Engine, control: &Control) {
-        let Some((pixels, open)) =
-            film.tile(self.place).map(|mut tile| (tile.pixels(), tile.take_open(self.samples.start)))
-        else {
-            return;
-        };
-        let sums = open.as_ref().map_or_else(Vec::new, |run| run.sums.clone());
-        let rendered = engine.render(&Work { pixels, samples: self.samples.clone(), open: sums }, control);
-        let Some(mut tile) = film.tile(self.place) else { return };
-        let added = match (rendered, open) {
-            (Ok(new), _) => tile.merge(new),
-            (Err(Stopped), Some(open)) => tile.add(open),
-            (Err(Stopped), None) => Ok(()),
-        };
-        debug_assert_eq!(added, Ok(()), "samples are given out once");
-    }
-}
-
-/// The end of the long round that begins with this sample: 256, 512, 768 and so on.
-fn long_round_after(sample: u32) -> u32 {
-    (sample / LONGEST_ROUND).saturating_add(1).saturating_mul(LONGEST_ROUND)
-}
-
-/// The end of the short round that begins with this sample: 16, 32, 64, 80, 96, 112, 128, 160, 192, 224, 256 and so on.
-fn short_round_after(sample: u32) -> u32 {
-    let power = (sample.checked_ilog2()).map_or(0, |bits| 1 << bits);
-    if sample < BLOCK {
-        return BLOCK;
-    }
-    if sample < LEAST_FOR_NOISE {
-        return power * 2;
-    }
-    let length = (power / 4).min(LONGEST_ROUND);
-    (sample / length).saturating_add(1).saturating_mul(length)
-}
-
-/// The same for somebody who looks and does not want to wait: 1, 4, 16, 32 and so on.
-fn even_round_after(sample: u32) -> u32 {
-    match sample {
-        0 => 1,
-        1..4 => 4,
-        _ => short_round_after(sample),
-    }
-}
-
-fn is_round(sample: u32) -> bool {
-    sample.checked_sub(1).is_some_and(|before| short_round_after(before) == sample)
-}
-
-/// The rounds that wait: those of the tiles with the fewest samples come first.
-struct Rounds<'f> {
-    film: &'f Film,
-    stop: Stop,
-    state: Mutex<State>,
-    changed: Condvar,
-}
-
-struct State {
-    /// First sample, place, end.
-    waiting: BinaryHeap<Reverse<(u32, usize, u32)>>,
-    /// Rounds that somebody is busy with.
-    begun: usize,
-}
-
-impl<'f> Rounds<'f> {
-    fn new(film: &'f Film, stop: Stop) -> Self {
-        let first = (0..film.len()).filter_map(|place| Round::after(film, stop, place, 0));
-        let waiting = first.map(|round| round.entry()).collect();
-        Self { film, stop, state: Mutex::new(State { waiting, begun: 0 }), changed: Condvar::new() }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Whether the round that begins with this sample must wait for the one before: where noise is looked at, and within
-    /// a block, whose samples are summed in order.
-    fn follows(&self, sample: u32) -> bool {
-        matches!(self.stop, Stop::Noise(_)) || !sample.is_multiple_of(BLOCK)
-    }
-
-    /// Waits for a round, of which no more than `most` samples are taken now; `None` when there is none to come.
-    fn next(&self, most: u32, control: &Control) -> Option<Round> {
-        let mut state = self.lock();
-        loop {
-            if control.is_finishing() {
-                return None;
-            }
-            if let Some(Reverse((start, place, end))) = state.waiting.pop() {
-                state.begun += 1;
-                let now = end.min(start.saturating_add(most.max(1)));
-                let rest = Round { place, samples: now..end };
-                if !self.follows(now) {
-                    let next = if now < end { Some(rest) } else { Round::after(self.film, self.stop, place, end) };
-                    state.waiting.extend(next.map(|next| next.entry()));
-                }
-                return Some(Round { place, samples: start..now });
-            }
-            if state.begun == 0 {
-                return None;
-            }
-            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-
-    fn done(&self, round: &Round) {
-        let follows = self.follows(round.samples.end);
-        let next = if follows { Round::after(self.film, self.stop, round.place, 0) } else { None };
-        let mut state = self.lock();
-        state.begun -= 1;
-        state.waiting.extend(next.map(|round| round.entry()));
-        self.changed.notify_all();
-    }
-}
-
-impl Round {
-    fn entry(&self) -> Reverse<(u32, usize, u32)> {
-        Reverse((self.samples.start, self.place, self.samples.end))
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
+    use super::super::Work;
     use super::super::tests::{busy, job, look};
     use super::*;
     use crate::film::{Layout, Rect};
@@ -250,7 +79,7 @@ mod tests {
 
     const REGION: Rect = Rect { x: 0, y: 0, width: 35, height: 20 };
 
-    fn with_job<T: Send>(threads: usize, test: impl FnOnce(&Job) -> T + Send) -> T {
+    pub fn with_job<T: Send>(threads: usize, test: impl FnOnce(&Job) -> T + Send) -> T {
         let world = busy();
         let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", UVec2::new(REGION.width, REGION.height));
         let integrator: AnyIntegrator =
@@ -269,23 +98,8 @@ mod tests {
         film
     }
 
-    fn whole(samples: Range<u32>) -> Film {
+    pub fn whole(samples: Range<u32>) -> Film {
         Film::new(Layout::new(REGION), samples)
-    }
-
-    #[test]
-    fn rounds_are_whole_blocks_and_grow_by_a_quarter() {
-        let mut ends = vec![0];
-        while *ends.last().unwrap() < 3000 {
-            ends.push(short_round_after(*ends.last().unwrap()));
-        }
-        assert_eq!(ends[..14], [0, 16, 32, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320, 384]);
-        assert!(ends[3..].windows(2).all(|pair| pair[1] <= pair[0] + pair[0] / 4));
-        assert!(ends.windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_ROUND && pair[1] % BLOCK == 0));
-        assert!(ends[1..].iter().all(|end| is_round(*end) && !is_round(*end + 1)));
-        assert_eq!(short_round_after(70), 80, "within a round, to its end");
-        assert_eq!([0, 70, 255, 256].map(long_round_after), [256, 256, 256, 512]);
-        assert_eq!([0, 1, 2, 4, 16, 70].map(even_round_after), [1, 4, 4, 16, 32, 80]);
     }
 
     #[test]
