@@ -7,6 +7,7 @@ use crate::{Edit, Frame, Probe, Status};
 use juggler::imaging::{self, Destination, Format, Options as FileOptions, RowWriter};
 use juggler::scene::Scene;
 use std::io::{Cursor, Seek, SeekFrom, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -74,13 +75,17 @@ impl Session {
         let status = Status { scene: name.to_owned(), scheduler: "work-stealing".into(), ..Status::default() };
         shared.publish(None, status.clone(), None);
         let work = move || {
-            let Some(pool) = worker::pool(options.threads) else { return };
-            Worker::new(shared, options, pool, status).run(build);
+            let Some(pool) = worker::pool(options.threads) else {
+                return shared.end("error: the threads cannot be started");
+            };
+            let worker = Worker::new(Arc::clone(&shared), options, pool, status);
+            if catch_unwind(AssertUnwindSafe(|| worker.run(build))).is_err() {
+                shared.end("error: the session has ended: the program has a fault");
+            }
         };
         let started = std::thread::Builder::new().name("session".into()).spawn(work);
         if let Err(error) = started {
-            let status = Status { error: Some(format!("error: {error}")), ..(*handle.0.desk().status).clone() };
-            handle.0.publish(None, status, None);
+            handle.0.end(&format!("error: {error}"));
         }
         Self { handle }
     }

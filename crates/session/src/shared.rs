@@ -3,7 +3,7 @@
 use crate::build::Mistake;
 use crate::screen::Draft;
 use crate::subject::Subject;
-use crate::{Edit, Frame, Status};
+use crate::{Edit, Frame, Stage, Status};
 use juggler::Picture;
 use juggler::math::Rgb;
 use juggler::tracer::film::Film;
@@ -31,8 +31,10 @@ pub struct Desk {
     pub edits: VecDeque<Edit>,
     /// How many were asked for.
     pub asked: u64,
-    /// A world that was built, or why there is none, with the number of its order.
-    pub built: Option<(u64, Result<Subject, Mistake>)>,
+    /// The number of the world that is waited for; those before it were overtaken.
+    pub awaited: u64,
+    /// That world once it is built, or why there is none.
+    pub built: Option<Result<Subject, Mistake>>,
     /// What was being rendered is done.
     pub done: bool,
     /// Nobody holds the session any more.
@@ -155,6 +157,12 @@ impl Shared {
         wakes.iter().for_each(|wake| wake());
     }
 
+    /// Says that nothing more will come, and why; what is shown stays.
+    pub fn end(&self, error: &str) {
+        let before = Status::clone(&self.desk().status);
+        self.publish(None, Status { error: Some(error.into()), stage: Stage::Finished, ..before }, None);
+    }
+
     /// Waits for a frame or a status with a higher number.
     pub fn wait(&self, frame: u64, status: u64, timeout: Duration) -> bool {
         let old = |desk: &Desk| desk.frame.as_ref().is_none_or(|f| f.number <= frame) && desk.status.number <= status;
@@ -165,5 +173,23 @@ impl Shared {
     /// Calls `wake` from now on.
     pub fn on_news(&self, wake: Wake) {
         self.desk().wakes.push(wake);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_is_told_and_what_is_shown_stays() {
+        let shared = Shared::default();
+        let status = Status { scene: "chess".into(), samples: 3.0, ..Status::default() };
+        shared.publish(None, status, None);
+        let seen = shared.desk().status.number;
+        shared.end("error: no");
+        assert!(shared.wait(u64::MAX, seen, Duration::ZERO));
+        let status = Arc::clone(&shared.desk().status);
+        assert_eq!((status.error.as_deref(), status.stage), (Some("error: no"), Stage::Finished));
+        assert_eq!((status.scene.as_str(), status.samples), ("chess", 3.0));
     }
 }

@@ -42,7 +42,6 @@ pub struct Worker {
     pub status: Status,
     /// The world that is being built.
     building: Option<Building>,
-    builds: u64,
     /// The picture is another one than the draft shows.
     pub moved: bool,
     /// The film is to be shown anew.
@@ -61,7 +60,6 @@ pub struct Worker {
 /// A world that is being built.
 #[derive(Clone, Copy)]
 struct Building {
-    number: u64,
     began: Instant,
     why: Why,
 }
@@ -108,7 +106,6 @@ impl Worker {
             pace: Pace::default(),
             status,
             building: None,
-            builds: 0,
             moved: false,
             retoned: false,
             drawn: Instant::now(),
@@ -161,9 +158,14 @@ impl Worker {
     }
 
     fn build(&mut self, build: Build, why: Why) {
-        self.builds += 1;
-        let (number, shared) = (self.builds, Arc::clone(&self.shared));
-        self.building = Some(Building { number, began: Instant::now(), why });
+        let shared = Arc::clone(&self.shared);
+        let number = {
+            let mut desk = shared.desk();
+            desk.built = None;
+            desk.awaited += 1;
+            desk.awaited
+        };
+        self.building = Some(Building { began: Instant::now(), why });
         if why == Why::Other {
             self.status.stage = Stage::Loading;
             self.publish(None);
@@ -178,8 +180,8 @@ impl Worker {
             });
             shared.tell(|desk| {
                 // One that was overtaken may end last.
-                if desk.built.as_ref().is_none_or(|(newest, _)| *newest < number) {
-                    desk.built = Some((number, result));
+                if desk.awaited == number {
+                    desk.built = Some(result);
                 }
             });
         });
@@ -189,7 +191,7 @@ impl Worker {
     fn take_built(&mut self) {
         let Some(building) = self.building else { return };
         let built = self.shared.desk().built.take();
-        let Some((_, result)) = built.filter(|(number, _)| *number == building.number) else {
+        let Some(result) = built else {
             if building.began.elapsed() >= QUICK && self.status.stage != Stage::Loading {
                 self.status.stage = Stage::Loading;
                 self.publish(None);
