@@ -75,8 +75,9 @@ impl Picture {
         let region = settings.region([width, height])?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
-        let (tone, limit, fingerprint) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
-        let of_scene = fingerprint.clone();
+        let (tone, limit, mut of_scene) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
+        of_scene.set_camera(&camera.1);
+        let fingerprint = of_scene.clone();
         let mut picture =
             Self { projection, region, tone, limit, fingerprint, of_scene, compiled, band_pixels: BAND_PIXELS };
         picture.complete_fingerprint();
@@ -299,4 +300,28 @@ pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>
     let picture = Picture::new(scene, settings)?;
     let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
     picture.write(writer, &Control::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seen_otherwise_it_is_the_picture_of_a_scene_that_says_so() {
+        let object = juggler_scene::Object::new(juggler_tracer::shape::Sphere::default());
+        let plain = Scene::new().size(16, 12).add(object);
+        let camera = Perspective { vertical_fov_degrees: Some(30.0), ..Perspective::default() };
+        let named = plain.clone().camera("left", Perspective::default()).camera("right", camera);
+        for (scene, name) in [(plain, None), (named.clone(), None), (named, Some("right".to_owned()))] {
+            let few = Settings { camera: name.clone(), ..Settings::default() };
+            let many = Settings { samples: Some(7), camera: name, ..Settings::default() };
+            let picture = Picture::new(&scene, &few).unwrap();
+            let wanted = Picture::new(&scene, &many).unwrap();
+            let seen = picture.seen(View { render: wanted.view().render, ..picture.view() }).unwrap();
+            assert_eq!(seen.fingerprint(), wanted.fingerprint());
+            let other = Perspective { vertical_fov_degrees: Some(50.0), ..Perspective::default() };
+            let moved = picture.seen(View { camera: other.into(), ..picture.view() }).unwrap();
+            assert_ne!(moved.fingerprint(), picture.fingerprint());
+        }
+    }
 }

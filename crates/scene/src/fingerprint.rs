@@ -1,13 +1,14 @@
 //! What decides a scene's pixels, by name: two scenes with the same fingerprint give the same picture for the same
 //! samples, and of two that differ it says in what.
 //!
-//! It covers the resolved description and the contents of mesh files. It does not cover titles, how long the
-//! animation is, the tone curve (pixels are linear), and how many samples are taken: a picture that is extended to
-//! more samples stays the same picture.
+//! It covers the resolved description and the contents of mesh files. It does not cover titles, cameras that are not
+//! looked through and the names of cameras, how long the animation is, the tone curve (pixels are linear), and how many
+//! samples are taken: a picture that is extended to more samples stays the same picture.
 
 use crate::compile::Files;
 use crate::description::{Description, Object};
 use crate::path::Path;
+use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::shape::AnyShape;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -31,6 +32,9 @@ impl Fingerprint {
         bare.animation = Default::default();
         bare.tone = Default::default();
         bare.render.samples = 0;
+        bare.camera = camera_of(scene).cloned();
+        bare.cameras.clear();
+        bare.render.camera = None;
         let mut parts = Self::default();
         // Descriptions are plain data: they can be written.
         let json = serde_json::to_value(&bare).unwrap_or_default();
@@ -60,10 +64,16 @@ impl Fingerprint {
         part.push_str(value);
     }
 
+    /// What is looked through, where the scene leaves it open.
+    pub fn set_camera(&mut self, camera: &AnyCamera) {
+        let json = serde_json::to_value(camera).unwrap_or_default();
+        self.0.insert("camera".into(), digest(json.to_string().as_bytes()));
+    }
+
     /// The same with the camera and the settings of another.
     #[must_use]
     pub fn seen_as(&self, other: &Self) -> Self {
-        let of_view = |name: &str| name.starts_with("camera") || name.starts_with("render.");
+        let of_view = |name: &str| name == "camera" || name.starts_with("render.");
         let own = self.0.iter().filter(|(name, _)| !of_view(name));
         let others = other.0.iter().filter(|(name, _)| of_view(name));
         Self(own.chain(others).map(|(name, value)| (name.clone(), value.clone())).collect())
@@ -83,6 +93,12 @@ impl Fingerprint {
         }
         hasher.finalize().to_hex().to_string()
     }
+}
+
+/// The camera that is looked through, unless it is one that follows from what can be seen.
+fn camera_of(scene: &Description) -> Option<&AnyCamera> {
+    let chosen = scene.render.camera.as_ref().and_then(|name| scene.cameras.get(&name.0));
+    chosen.or(scene.camera.as_ref()).or_else(|| scene.cameras.values().next())
 }
 
 fn is_nothing(value: &Value) -> bool {

@@ -31,6 +31,8 @@ mod subject;
 mod watch;
 #[cfg(feature = "native")]
 mod worker;
+#[cfg(feature = "native")]
+mod worlds;
 
 pub use build::{Build, MOST_PIXELS, Mistake, text_of};
 pub use coarse::{Pace, coarse_size};

@@ -1,25 +1,23 @@
 //! The thread that turns edits into pictures: what is to be done, and when. How it is done: `rendering.rs`.
 
-use crate::build::{Build, Mistake};
+use crate::build::Build;
 use crate::coarse::Pace;
 use crate::screen::{Canvas, Draft, Toner};
 use crate::session::Options;
 use crate::shared::{Shared, Shown};
 use crate::subject::{Change, Subject};
 use crate::watch::Watch;
+use crate::worlds::{Building, QUICK, Why};
 use crate::{Edit, Frame, Setting, Stage, Status};
 use juggler::Picture;
 use juggler::imaging::{Tone, atomic};
 use juggler::tracer::film::{Film, Rect};
 use juggler::tracer::render::Scheduler;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A world that takes longer is told of.
-const QUICK: Duration = Duration::from_millis(100);
 /// Most threads that render.
 const MAX_THREADS: usize = 1024;
 /// How often it is looked whether the next frame of an animation is due.
@@ -41,7 +39,7 @@ pub struct Worker {
     pub pace: Pace,
     pub status: Status,
     /// The world that is being built.
-    building: Option<Building>,
+    pub building: Option<Building>,
     /// The picture is another one than the draft shows.
     pub moved: bool,
     /// The film is to be shown anew.
@@ -53,26 +51,8 @@ pub struct Worker {
     /// The scene that was asked for last.
     wanted: String,
     /// What is wrong with the scene's files.
-    broken: Option<String>,
-    watch: Option<Watch>,
-}
-
-/// A world that is being built.
-#[derive(Clone, Copy)]
-struct Building {
-    began: Instant,
-    why: Why,
-}
-
-/// Why a world is built.
-#[derive(Clone, Copy, PartialEq)]
-enum Why {
-    /// Another scene is asked for.
-    Other,
-    /// The files may have changed.
-    Files,
-    /// Something of the scene is another, or the frame.
-    Parts,
+    pub broken: Option<String>,
+    pub watch: Option<Watch>,
 }
 
 /// Threads that render; all cores when 0.
@@ -155,93 +135,6 @@ impl Worker {
             draft: Arc::clone(&self.draft),
         });
         self.shared.publish(frame, self.status.clone(), shown);
-    }
-
-    fn build(&mut self, build: Build, why: Why) {
-        let shared = Arc::clone(&self.shared);
-        let number = {
-            let mut desk = shared.desk();
-            desk.built = None;
-            desk.awaited += 1;
-            desk.awaited
-        };
-        self.building = Some(Building { began: Instant::now(), why });
-        if why == Why::Other {
-            self.status.stage = Stage::Loading;
-            self.publish(None);
-        }
-        self.pool.spawn(move || {
-            // A panic here would end the program.
-            let result = catch_unwind(AssertUnwindSafe(|| build.run())).unwrap_or_else(|_| {
-                Err(Mistake {
-                    text: "error: the scene cannot be built: the program has a fault".into(),
-                    files: Vec::new(),
-                })
-            });
-            shared.tell(|desk| {
-                // One that was overtaken may end last.
-                if desk.awaited == number {
-                    desk.built = Some(result);
-                }
-            });
-        });
-    }
-
-    /// Takes a world that was built.
-    fn take_built(&mut self) {
-        let Some(building) = self.building else { return };
-        let built = self.shared.desk().built.take();
-        let Some(result) = built else {
-            if building.began.elapsed() >= QUICK && self.status.stage != Stage::Loading {
-                self.status.stage = Stage::Loading;
-                self.publish(None);
-            }
-            return;
-        };
-        self.building = None;
-        match result {
-            Ok(subject) => self.take_subject(subject, building),
-            Err(mistake) => self.take_mistake(mistake, building),
-        }
-    }
-
-    fn take_subject(&mut self, subject: Subject, building: Building) {
-        self.status.error = None;
-        if building.why != Why::Parts {
-            self.broken = None;
-            self.watch(&subject.files());
-        }
-        if building.why == Why::Other {
-            (self.region, self.playing) = (None, None);
-            self.pace.forget();
-        }
-        let before = self.subject.replace(Arc::new(subject));
-        if let Some(before) = before {
-            self.take_view(before.picture());
-        } else {
-            self.moved = true;
-        }
-        self.describe();
-    }
-
-    fn take_mistake(&mut self, mistake: Mistake, building: Building) {
-        if building.why != Why::Parts {
-            self.broken = Some(mistake.text.clone());
-            let mut files = self.subject.as_ref().map_or_else(Vec::new, |subject| subject.files());
-            files.extend(mistake.files);
-            self.watch(&files);
-        }
-        (self.status.error, self.playing) = (Some(mistake.text), None);
-        self.describe();
-        // The film goes on, or is finished already.
-        self.status.stage = if self.subject.is_some() { Stage::Moving } else { Stage::Finished };
-        self.publish(None);
-    }
-
-    fn watch(&mut self, files: &[PathBuf]) {
-        if let Some(watch) = &mut self.watch {
-            watch.set(files);
-        }
     }
 
     fn take_edits(&mut self) {
@@ -337,7 +230,7 @@ impl Worker {
     }
 
     /// The film goes on when its samples are those of the new picture too.
-    fn take_view(&mut self, before: &Picture) {
+    pub fn take_view(&mut self, before: &Picture) {
         let Some(subject) = &self.subject else { return };
         let picture = subject.picture();
         if before.size() != picture.size() {

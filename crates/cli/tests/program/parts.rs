@@ -48,7 +48,7 @@ fn another_picture_does_not_go_on() {
         ("--seed 7", "render.seed: 0 instead of 7"),
         ("--frame 1", "frame: 0 instead of 1"),
         ("--integrator normals", "render.integrator"),
-        ("--camera top", "render.camera"),
+        ("--camera top", "camera: "),
         ("--crop 0,0,16,16", "region"),
         ("--samples 8", "beyond 8"),
         ("--noise 0.1", "noise"),
