@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Everything that must hold before a change lands; CI runs exactly this. Cheap checks first.
 #   ./check.sh            all of it
-#   ./check.sh quick      without the release build
-#   ./check.sh --windows  instead, the window of juggler view and the page of juggler serve, driven; not yet in CI
+#   ./check.sh quick      without the release build, and without driving windows and pages
+#   ./check.sh --windows  instead, only the window of juggler view and the page of juggler serve, driven
 #   ./check.sh --web      instead, the page that renders in the browser alone (web/build.sh): built, driven in Chromium, not in CI
 #   ./check.sh --cluster  instead, the commands of docs/cluster.md on a small Slurm of its own: as root, some minutes, not in CI
 set -euo pipefail
@@ -27,13 +27,17 @@ drive() {
   "$test" "$programs/debug/juggler"
 }
 
-if [ "$mode" = --windows ]; then
+drive_windows() {
   cargo build --locked -p juggler-cli
   step "tests: the window of juggler view, with keys and mouse"
   drive tests/viewer/test.sh "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
 
   step "tests: the page of juggler serve, in Chromium"
   drive tests/browser/test.sh "chromium nodejs npm" chromium node npm
+}
+
+if [ "$mode" = --windows ]; then
+  drive_windows
   exit
 fi
 
@@ -66,6 +70,8 @@ step "tests: units, contracts, hostile input, tree, licences, schema, documentat
 cargo test --workspace --locked
 
 if [ "$mode" = all ]; then
+  drive_windows
+
   step "tests: pictures and hashes again, optimised: debug and release must agree to the bit"
   cargo test --release --locked -p juggler-golden
 
