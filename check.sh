@@ -28,7 +28,6 @@ drive() {
 }
 
 drive_windows() {
-  cargo build --locked -p juggler-cli
   step "tests: the window of juggler view, with keys and mouse"
   drive tests/viewer/test.sh "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
 
@@ -37,13 +36,14 @@ drive_windows() {
 }
 
 if [ "$mode" = --windows ]; then
+  cargo build --workspace --locked
   drive_windows
   exit
 fi
 
 if [ "$mode" = --web ]; then
   step "tests: the page that renders in the browser alone"
-  cargo build --locked -p juggler-cli
+  cargo build --workspace --locked
   web/build.sh
   exec tests/web/test.sh "$programs/debug/juggler"
 fi

@@ -109,7 +109,11 @@ impl Worker {
         (self.status.error, self.playing) = (Some(mistake.text), None);
         self.describe();
         // The film goes on, or is finished already.
-        self.status.stage = if self.subject.is_some() { Stage::Moving } else { Stage::Finished };
+        match self.status.stage {
+            _ if self.subject.is_none() => self.status.stage = Stage::Finished,
+            Stage::Loading => self.status.stage = Stage::Moving,
+            _ => {}
+        }
         self.publish(None);
     }
 

@@ -2,7 +2,7 @@
 
 use crate::Options;
 use crate::chooser::Chooser;
-use crate::keys::{self, Command};
+use crate::keys::{self, Command, Held};
 use crate::lens::Lens;
 use crate::overlay;
 use crate::panel::{Around, Panel, next_name};
@@ -28,6 +28,7 @@ pub struct Viewer {
     session: Session,
     screen: Screen,
     pilot: Pilot,
+    held: Held,
     panel: Panel,
     shows_panel: bool,
     chooser: Chooser,
@@ -55,6 +56,7 @@ impl Viewer {
             session,
             screen: Screen::default(),
             pilot: Pilot::default(),
+            held: Held::default(),
             panel: Panel::default(),
             shows_panel: true,
             chooser,
@@ -85,7 +87,8 @@ impl Viewer {
             commands.retain(|command| over.contains(command));
             return commands;
         }
-        let (held, fast, seconds) = context.input(|input| (keys::held(input), input.modifiers.shift, input.stable_dt));
+        let (held, fast, seconds) =
+            context.input(|input| (self.held.look(input), input.modifiers.shift, input.stable_dt));
         if !held.is_empty() {
             edits.extend(self.pilot.controls.keys(&held, fast, seconds, Lens::of(status).reach));
             context.request_repaint_after(STEP);

@@ -1,6 +1,7 @@
 //! Every key and every gesture in one table: the input acts by it, the help shows it.
 
 use eframe::egui::{Event, InputState, Key, Modifiers};
+use std::collections::HashSet;
 
 /// What keys do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -194,20 +195,37 @@ fn bindings() -> impl Iterator<Item = &'static Binding> {
     GROUPS.iter().flat_map(|group| group.bindings)
 }
 
-impl With {
-    fn holds(self, modifiers: Modifiers) -> bool {
-        modifiers.command == (self == Self::Control)
+impl Binding {
+    fn fits(&self, key: Key, modifiers: Modifiers) -> bool {
+        self.keys.contains(&key) && modifiers.command == (self.with == With::Control)
     }
 }
 
-/// The motions whose keys are held.
-pub fn held(input: &InputState) -> Vec<Motion> {
-    let holds = |row: &&Binding| row.with.holds(input.modifiers) && row.keys.iter().any(|key| input.key_down(*key));
-    let motions = bindings().filter(holds).filter_map(|row| match row.action {
-        Action::Hold(motion) => Some(motion),
+/// Keys that are held, and what they move.
+#[derive(Default)]
+pub struct Held(HashSet<Key>);
+
+impl Held {
+    /// The motions whose keys are held now. A press counts with the modifiers that it came with: those that are held by now
+    /// may be others, and Control with S must not move anything while its keys come up.
+    pub fn look(&mut self, input: &InputState) -> Vec<Motion> {
+        for event in &input.events {
+            if let Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event {
+                self.0.remove(key);
+                self.0.extend(motions().any(|(row, _)| row.fits(*key, *modifiers)).then_some(*key));
+            }
+        }
+        self.0.retain(|key| input.key_down(*key));
+        motions().filter(|(row, _)| row.keys.iter().any(|key| self.0.contains(key))).map(|(_, motion)| motion).collect()
+    }
+}
+
+/// Rows of the table that move something.
+fn motions() -> impl Iterator<Item = (&'static Binding, Motion)> {
+    bindings().filter_map(|row| match row.action {
+        Action::Hold(motion) => Some((row, motion)),
         Action::Press(_) => None,
-    });
-    motions.collect()
+    })
 }
 
 /// What was asked for since the last look. A press counts with the modifiers that it came with, and once however long it
@@ -221,7 +239,7 @@ pub fn pressed(input: &InputState) -> Vec<Command> {
 }
 
 fn command(key: Key, modifiers: Modifiers) -> Option<Command> {
-    let row = bindings().find(|row| row.with.holds(modifiers) && row.keys.contains(&key))?;
+    let row = bindings().find(|row| row.fits(key, modifiers))?;
     match row.action {
         Action::Press(command) => Some(command),
         Action::Hold(_) => None,
@@ -232,19 +250,22 @@ fn command(key: Key, modifiers: Modifiers) -> Option<Command> {
 mod tests {
     use super::*;
     use eframe::egui::RawInput;
-    use std::collections::HashSet;
 
-    /// What egui makes of keys that go down.
-    fn input(keys: &[Key], modifiers: Modifiers) -> InputState {
+    /// What egui makes of keys that go down with some modifiers, which then are others.
+    fn input(keys: &[Key], modifiers: Modifiers, then: Modifiers) -> InputState {
         let context = eframe::egui::Context::default();
         let event = |key: &Key| Event::Key { key: *key, physical_key: None, pressed: true, repeat: false, modifiers };
-        let events = keys.iter().map(event).chain([Event::ModifiersChanged(modifiers)]).collect();
+        let events = keys.iter().map(event).chain([Event::ModifiersChanged(then)]).collect();
         let mut seen = InputState::default();
         let mut output = context.run_ui(RawInput { events, ..RawInput::default() }, |ui| {
             seen = ui.input(Clone::clone);
         });
         output.textures_delta.clear();
         seen
+    }
+
+    fn held(input: &InputState) -> Vec<Motion> {
+        Held::default().look(input)
     }
 
     #[test]
@@ -261,16 +282,23 @@ mod tests {
 
     #[test]
     fn keys_are_what_the_table_says() {
-        let both = input(&[Key::W, Key::ArrowLeft, Key::Tab], Modifiers::NONE);
+        let both = input(&[Key::W, Key::ArrowLeft, Key::Tab], Modifiers::NONE, Modifiers::NONE);
         assert_eq!(held(&both), [Motion::Forward, Motion::Left]);
         assert_eq!(pressed(&both), [Command::Panel]);
+        let mut keys = Held::default();
+        keys.look(&both);
+        assert_eq!(keys.look(&InputState::default()), [], "they came up");
     }
 
     #[test]
     fn control_is_another_key() {
-        let save = input(&[Key::S], Modifiers::COMMAND);
-        assert_eq!((held(&save), pressed(&save)), (vec![], vec![Command::Save]));
-        let fast = input(&[Key::S], Modifiers::SHIFT);
-        assert_eq!((held(&fast), pressed(&fast)), (vec![Motion::Back], vec![]));
+        for then in [Modifiers::COMMAND, Modifiers::NONE] {
+            let save = input(&[Key::S], Modifiers::COMMAND, then);
+            assert_eq!((held(&save), pressed(&save)), (vec![], vec![Command::Save]));
+        }
+        for then in [Modifiers::SHIFT, Modifiers::COMMAND] {
+            let fast = input(&[Key::S], Modifiers::SHIFT, then);
+            assert_eq!((held(&fast), pressed(&fast)), (vec![Motion::Back], vec![]));
+        }
     }
 }

@@ -9,12 +9,9 @@ use clap::Args;
 use juggler_serve::{Options, ServeError, Server};
 use juggler_session::Session;
 use std::net::{SocketAddr, ToSocketAddrs};
-use std::time::Duration;
 
 /// What is shown when nothing is said.
 const FIRST_SCENE: &str = "juggler";
-/// How often signals are looked for.
-const PAUSE: Duration = Duration::from_millis(50);
 
 /// Flags of `juggler serve`.
 #[derive(Debug, Args)]
@@ -56,12 +53,7 @@ impl Serve {
         let url = server.url();
         let _running = server.start()?;
         console::print(&format!("juggler serves at {url}"))?;
-        loop {
-            if let Some(signal) = interrupts.caught() {
-                return Err(signal);
-            }
-            std::thread::sleep(PAUSE);
-        }
+        Err(interrupts.wait())
     }
 }
 
