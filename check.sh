@@ -73,7 +73,8 @@ if [ "$mode" = all ]; then
   drive_windows
 
   step "tests: pictures and hashes again, optimised: debug and release must agree to the bit"
-  cargo test --release --locked -p juggler-golden
+  cargo test --release --locked -p juggler-golden \
+    --test arithmetic --test hashes --test instances --test matrix --test noise --test scales
 
   step "tests: hashes once more, built for this very processor"
   RUSTFLAGS="-C target-cpu=native" CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \

@@ -23,7 +23,7 @@ impl Interrupts {
             flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&again))
                 .and_then(|_| flag::register(signal, Arc::clone(&again)))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&number), signal.unsigned_abs() as usize))
-                .map_err(cannot_watch)?;
+                .map_err(|error| cannot_watch(&error))?;
         }
         Ok(Self { number })
     }
@@ -39,7 +39,7 @@ impl Interrupts {
         // One that came before these listen is remembered.
         let mut signals = match Signals::new(WATCHED) {
             Ok(signals) => signals,
-            Err(error) => return cannot_watch(error),
+            Err(error) => return cannot_watch(&error),
         };
         loop {
             if let Some(signal) = self.caught() {
@@ -50,6 +50,6 @@ impl Interrupts {
     }
 }
 
-fn cannot_watch(error: std::io::Error) -> Failure {
-    Failure::System(format!("cannot watch for signals: {}", plain(&error)))
+fn cannot_watch(error: &std::io::Error) -> Failure {
+    Failure::System(format!("cannot watch for signals: {}", plain(error)))
 }
