@@ -89,6 +89,7 @@ async function dragAndKeys(tab) {
   const way = Math.hypot(...eye().map((value, axis) => value - before[axis]));
   assert(flown > 0.2 && way > 0.01 * tab.status.extent, `W changed ${flown}, moved ${way}`);
   assert((await change(tab, () => mouse.wheel(0, -300))) > 0.2, "the wheel");
+  assert((await change(tab, () => keyboard.press("x", { delay: 200 }))) > 0.2, "X zooms");
   await keyboard.press("m");
   assert((await change(tab, () => drag([500, 400], [600, 380]))) > 0.2, "orbit");
   assert(tab.sent.some((text) => `${text}`.includes("orbit")), "orbit mode");

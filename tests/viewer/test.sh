@@ -110,7 +110,7 @@ say "the first picture: $(title)"
 drag 300 300 420 340 1; settle; shoot_picture looked; differ start looked
 press Home; settle; point 5 5; shoot_picture back; same start back
 say "a drag looks around, Home goes back"
-for key in w a e j i u; do
+for key in w a e j i u x; do
   hold "$key"; settle; shoot_picture "key-$key"; differ start "key-$key"
   press Home; settle
 done

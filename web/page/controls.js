@@ -3,7 +3,9 @@
 /** Degrees of a drag across the whole picture. */
 const TURN = 120;
 /** Degrees a second of a key that turns. */
-const ROLL = 60;
+const DEGREES = 60;
+/** The logarithm of the factor of a second of a key that zooms. */
+const ZOOM = 1;
 /** Fractions of the scene's extent a second of a key that moves. */
 const PACE = 0.15;
 /** Pixels of the window that a click may wander. */
@@ -12,10 +14,10 @@ const STILL = 4;
 const MOVES = {
   KeyW: { forward: 1 }, ArrowUp: { forward: 1 }, KeyS: { forward: -1 }, ArrowDown: { forward: -1 },
   KeyA: { right: -1 }, ArrowLeft: { right: -1 }, KeyD: { right: 1 }, ArrowRight: { right: 1 },
-  KeyE: { up: 1 }, PageUp: { up: 1 }, KeyC: { up: -1 }, PageDown: { up: -1 },
-  KeyQ: { roll_degrees: -1 }, KeyR: { roll_degrees: 1 },
+  KeyE: { up: 1 }, PageUp: { up: 1 }, KeyQ: { up: -1 }, PageDown: { up: -1 },
+  KeyJ: { yaw_degrees: -1 }, KeyL: { yaw_degrees: 1 }, KeyI: { pitch_degrees: 1 }, KeyK: { pitch_degrees: -1 },
+  KeyU: { roll_degrees: -1 }, KeyO: { roll_degrees: 1 }, KeyX: { zoom: 1 }, KeyC: { zoom: -1 },
 };
-const ZOOMS = { "+": 1.1, "=": 1.1, "-": 1 / 1.1, "−": 1 / 1.1 };
 
 /** `hands.edit(edit)` takes edits, `hands.extent()`, `hands.orbits()` and `hands.pixel(x, y)` tell what they need. */
 export function listen(canvas, hands) {
@@ -79,6 +81,16 @@ function elsewhere(event) {
   return event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName);
 }
 
+/** What the keys `held` add up to, each by the amount of its kind. */
+function total(held, by) {
+  const sum = {};
+  for (const [axis, sign] of [...held].flatMap((code) => Object.entries(MOVES[code]))) {
+    const amount = axis === "zoom" ? by.zoom : axis.endsWith("_degrees") ? by.turn : by.step;
+    sum[axis] = (sum[axis] ?? 0) + sign * amount;
+  }
+  return sum;
+}
+
 function keys(hands) {
   const held = new Set();
   let running = false;
@@ -94,19 +106,14 @@ function keys(hands) {
     const seconds = before === null ? 1 / 60 : Math.min(0.1, Math.max(0.001, (now - before) / 1000));
     before = now;
     const step = hands.extent() * PACE * seconds * (fast ? 4 : 1);
-    const sum = {};
-    for (const code of held) {
-      for (const [axis, sign] of Object.entries(MOVES[code])) {
-        sum[axis] = (sum[axis] ?? 0) + sign * (axis === "roll_degrees" ? ROLL * seconds : step);
-      }
-    }
-    hands.edit({ fly: sum });
+    const { zoom = 0, ...sum } = total(held, { step, turn: DEGREES * seconds, zoom: ZOOM * seconds });
+    if (Object.keys(sum).length > 0) hands.edit({ fly: sum });
+    if (zoom !== 0) hands.edit({ zoom: Math.exp(zoom) });
     requestAnimationFrame(fly);
   };
   addEventListener("keydown", (event) => {
     fast = event.shiftKey;
     if (elsewhere(event)) return;
-    if (ZOOMS[event.key]) return hands.edit({ zoom: ZOOMS[event.key] });
     if (!MOVES[event.code]) return;
     event.preventDefault();
     held.add(event.code);

@@ -1,6 +1,6 @@
 // From what is pressed and dragged to what the session is asked for; the same numbers as in the native window.
 
-const SIZES_PER_SECOND = 0.25, DEGREES_PER_SECOND = 60, FAST = 4;
+const SIZES_PER_SECOND = 0.25, DEGREES_PER_SECOND = 60, ZOOM_PER_SECOND = 1, FAST = 4;
 const ORBIT_DEGREES = 0.35, PARALLEL_DEGREES = 0.15, WHEEL_POINTS = 400;
 const LONGEST_STEP = 0.1;
 const DEFAULT_FIELD = 40, DEFAULT_HEIGHT = 4;
@@ -32,15 +32,18 @@ function halfHeight(camera, shape) {
   return Math.tan(((camera.vertical_fov_degrees ?? DEFAULT_FIELD) * RADIANS) / 2);
 }
 
-/// Keys that are held for some seconds.
+/// Keys that are held for some seconds: all edits that they are.
 export function held(motions, fast, seconds, extent) {
   const time = Math.min(seconds, LONGEST_STEP) * (fast ? FAST : 1);
   const step = extent * SIZES_PER_SECOND * steering.speed * time;
   const fly = {};
+  let zoom = 0;
   for (const [axis, sign] of motions) {
-    fly[axis] = (fly[axis] ?? 0) + sign * (axis.endsWith("_degrees") ? DEGREES_PER_SECOND * time : step);
+    if (axis === "zoom") zoom += sign * ZOOM_PER_SECOND * time;
+    else fly[axis] = (fly[axis] ?? 0) + sign * (axis.endsWith("_degrees") ? DEGREES_PER_SECOND * time : step);
   }
-  return Object.values(fly).some((value) => value !== 0) ? { fly } : null;
+  const flown = Object.values(fly).some((value) => value !== 0) ? [{ fly }] : [];
+  return zoom === 0 ? flown : [...flown, { zoom: Math.exp(zoom) }];
 }
 
 /// A drag over so many points of the screen: what was under the pointer stays there, or the scene turns.

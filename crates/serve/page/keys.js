@@ -28,6 +28,8 @@ export const GROUPS = [
       hold(["k"], "pitch_degrees", -1, "pitch"),
       hold(["u"], "roll_degrees", -1, "roll"),
       hold(["o"], "roll_degrees", 1, "roll"),
+      hold(["x"], "zoom", 1, "zoom"),
+      hold(["c"], "zoom", -1, "zoom"),
       press(["+", "="], "faster", "faster"),
       press(["-"], "slower", "slower"),
       press(["m"], "mode", "fly or orbit"),

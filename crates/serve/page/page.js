@@ -185,7 +185,7 @@ function stepFrame(step) {
 
 const keys = new Keys({
   commands,
-  hold: (motions, fast, seconds) => status && edit(held(motions, fast, seconds, status.extent)),
+  hold: (motions, fast, seconds) => status && held(motions, fast, seconds, status.extent).forEach(edit),
   isBlocked: () => document.querySelector("dialog[open]") !== null,
 });
 

@@ -8,7 +8,9 @@ use juggler_session::{Edit, Fly, Orbit};
 const REACH_PER_SECOND: f32 = 0.25;
 /// How fast keys turn it.
 const DEGREES_PER_SECOND: f32 = 60.0;
-/// What Shift does to both.
+/// How fast keys zoom: the logarithm of the factor of a second.
+const ZOOM_PER_SECOND: f32 = 1.0;
+/// What Shift does to all three.
 const FAST: f32 = 4.0;
 /// What a press of the speed keys does.
 const SPEED_STEP: f32 = 1.5;
@@ -66,8 +68,9 @@ impl Controls {
     }
 
     /// Keys that are held for some seconds.
-    pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, reach: f32) -> Option<Edit> {
+    pub fn keys(&self, held: &[Motion], fast: bool, seconds: f32, reach: f32) -> Vec<Edit> {
         let seconds = seconds.min(LONGEST_STEP) * if fast { FAST } else { 1.0 };
+        let mut zoom = 0.0;
         let (step, turn) = (reach * REACH_PER_SECOND * self.speed * seconds, DEGREES_PER_SECOND * seconds);
         let mut fly = Fly::default();
         for motion in held {
@@ -84,9 +87,12 @@ impl Controls {
                 Motion::PitchDown => fly.pitch_degrees -= turn,
                 Motion::RollLeft => fly.roll_degrees -= turn,
                 Motion::RollRight => fly.roll_degrees += turn,
+                Motion::Closer => zoom += ZOOM_PER_SECOND * seconds,
+                Motion::Wider => zoom -= ZOOM_PER_SECOND * seconds,
             }
         }
-        (fly != Fly::default()).then_some(Edit::Fly(fly))
+        let flown = (fly != Fly::default()).then_some(Edit::Fly(fly));
+        flown.into_iter().chain((zoom != 0.0).then(|| Edit::Zoom(zoom.exp()))).collect()
     }
 
     /// A drag with the main button over so many points of the screen, each of which shows `pixels` of the picture: what
@@ -137,25 +143,42 @@ mod tests {
         }
     }
 
+    fn only(mut edits: Vec<Edit>) -> Option<Edit> {
+        assert_eq!(edits.len(), 1, "{edits:?}");
+        edits.pop()
+    }
+
+    #[test]
+    fn keys_zoom_and_fly_at_once() {
+        let controls = Controls::default();
+        let edits = controls.keys(&[Motion::Closer, Motion::Left], false, 0.05, 10.0);
+        let [Edit::Fly(fly), Edit::Zoom(there)] = edits[..] else { panic!("{edits:?}") };
+        let Some(Edit::Zoom(back)) = only(controls.keys(&[Motion::Wider], false, 0.05, 10.0)) else {
+            panic!("no zoom")
+        };
+        assert!(fly.right < 0.0 && there > 1.0 && (there * back - 1.0).abs() < 1e-5);
+    }
+
     #[test]
     fn speed_follows_the_scene_and_the_time() {
         let controls = Controls::default();
-        let slow = flown(controls.keys(&[Motion::Forward], false, 0.02, 10.0));
+        let slow = flown(only(controls.keys(&[Motion::Forward], false, 0.02, 10.0)));
         assert_eq!(slow, Fly { forward: 0.02 * 10.0 * REACH_PER_SECOND, ..Fly::default() });
-        let large = flown(controls.keys(&[Motion::Forward], false, 0.02, 1e6));
+        let large = flown(only(controls.keys(&[Motion::Forward], false, 0.02, 1e6)));
         assert!((large.forward / slow.forward - 1e5).abs() < 1.0);
-        let fast = flown(controls.keys(&[Motion::Forward], true, 0.02, 10.0));
+        let fast = flown(only(controls.keys(&[Motion::Forward], true, 0.02, 10.0)));
         assert!((fast.forward / slow.forward - FAST).abs() < 1e-4);
-        let late = flown(controls.keys(&[Motion::YawLeft], false, 30.0, 10.0));
+        let late = flown(only(controls.keys(&[Motion::YawLeft], false, 30.0, 10.0)));
         assert_eq!(late.yaw_degrees, -DEGREES_PER_SECOND * LONGEST_STEP);
     }
 
     #[test]
     fn keys_against_each_other_do_nothing() {
         let controls = Controls::default();
-        assert_eq!(controls.keys(&[Motion::Left, Motion::Right], false, 0.02, 10.0), None);
-        assert_eq!(controls.keys(&[], false, 0.02, 10.0), None);
-        let both = flown(controls.keys(&[Motion::Up, Motion::RollRight], false, 0.02, 10.0));
+        assert_eq!(controls.keys(&[Motion::Left, Motion::Right], false, 0.02, 10.0), []);
+        assert_eq!(controls.keys(&[Motion::Closer, Motion::Wider], false, 0.02, 10.0), []);
+        assert_eq!(controls.keys(&[], false, 0.02, 10.0), []);
+        let both = flown(only(controls.keys(&[Motion::Up, Motion::RollRight], false, 0.02, 10.0)));
         assert!(both.up > 0.0 && both.roll_degrees > 0.0 && both.right == 0.0);
     }
 

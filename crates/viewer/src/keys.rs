@@ -12,7 +12,7 @@ pub enum Action {
     Press(Command),
 }
 
-/// A motion of the camera along or about its own axes.
+/// A motion of the camera along or about its own axes, or of its lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     Forward,
@@ -27,6 +27,8 @@ pub enum Motion {
     PitchDown,
     RollLeft,
     RollRight,
+    Closer,
+    Wider,
 }
 
 /// What happens once.
@@ -133,6 +135,8 @@ pub const GROUPS: &[Group] = &[
             hold(&[Key::K], Motion::PitchDown, "pitch"),
             hold(&[Key::U], Motion::RollLeft, "roll"),
             hold(&[Key::O], Motion::RollRight, "roll"),
+            hold(&[Key::X], Motion::Closer, "zoom"),
+            hold(&[Key::C], Motion::Wider, "zoom"),
             press(&[Key::Plus, Key::Equals], Command::Faster, "speed"),
             press(&[Key::Minus], Command::Slower, "speed"),
             press(&[Key::M], Command::OtherMode, "fly or orbit"),
