@@ -62,7 +62,7 @@ async function flies() {
     return change;
   };
   await page.locator("#picture").focus();
-  for (const key of ["w", "ArrowLeft", "e", "j", "x"]) {
+  for (const key of ["w", "ArrowLeft", "j", "l", "u", "x"]) {
     await moved(key, () => page.keyboard.press(key, { delay: 400 }));
   }
   const { x, y, width, height } = await page.locator("#picture").boundingBox();

@@ -41,9 +41,11 @@ export class View {
     this.context.drawImage(this.small, 0, 0, ...this.size);
   }
 
-  tiles({ places, light }) {
-    this.board.put(new Patches(places, light));
-    this.paint(places, 5);
+  tiles({ parts }) {
+    for (const { places, light } of parts) {
+      this.board.put(new Patches(places, light));
+      this.paint(places, 5);
+    }
   }
 
   /** Tile by tile, as what lies between them may still be of the coarse frame. */

@@ -5,6 +5,9 @@ import init, { Painter } from "./juggler.js";
 
 /** Milliseconds of a slice. */
 const SLICE = 12;
+/** Milliseconds after which tiles are sent for the second time, and longest: what the page shows costs time too. */
+const FIRST_SHOW = 40;
+const LAST_SHOW = 400;
 
 let painter = null;
 /** Number of the page's last wish; what is rendered belongs to it. */
@@ -12,6 +15,9 @@ let number = 0;
 let refining = false;
 /** Whether nothing of the scene has been shown yet. */
 let fresh = true;
+
+/** Tiles that wait to be sent, when they are, and how long the next ones will wait. */
+let [held, due, interval] = [[], 0, FIRST_SHOW];
 
 const again = new MessageChannel();
 again.port1.onmessage = refine;
@@ -24,6 +30,7 @@ function send(message, patches) {
 }
 
 function start() {
+  [due, interval] = [0, FIRST_SHOW];
   if (!refining) again.port2.postMessage(0);
   refining = true;
 }
@@ -31,14 +38,27 @@ function start() {
 function refine() {
   if (!refining) return;
   try {
-    const patches = painter.refine(SLICE);
-    const finished = painter.isFinished();
-    send({ type: "tiles", finished }, patches);
-    refining = !finished;
+    hold(painter.refine(SLICE));
+    refining = !painter.isFinished();
+    if (!refining || performance.now() >= due) show();
     if (refining) again.port2.postMessage(0);
   } catch (error) {
     fail(error);
   }
+}
+
+function hold(patches) {
+  if (!patches) return;
+  held.push({ places: patches.places(), light: patches.light() });
+  patches.free();
+}
+
+/** Sends the tiles that wait. */
+function show() {
+  if (held.length > 0) postMessage({ type: "tiles", number, parts: held }, held.flatMap(({ places, light }) => [places.buffer, light.buffer]));
+  held = [];
+  due = performance.now() + interval;
+  interval = Math.min(interval * 1.5, LAST_SHOW);
 }
 
 /** What the renderer itself says is a text. Anything else is the end of it: its memory may be in any state. */
@@ -80,6 +100,8 @@ const answers = {
 let turn = Promise.resolve();
 
 async function answer(message) {
+  // Tiles from before may count after it too.
+  show();
   number = message.number ?? number;
   try {
     await answers[message.type](message);
