@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 /// A world that takes longer is told of.
 pub const QUICK: Duration = Duration::from_millis(100);
+
 /// A world that is being built.
 #[derive(Clone, Copy)]
 pub struct Building {
@@ -32,6 +33,7 @@ pub enum Why {
 }
 
 impl Worker {
+    /// Begins with a world; one that is being built is overtaken.
     pub fn build(&mut self, build: Build, why: Why) {
         let shared = Arc::clone(&self.shared);
         let number = {
@@ -66,7 +68,7 @@ impl Worker {
     pub fn take_built(&mut self) {
         let Some(building) = self.building else { return };
         let built = self.shared.desk().built.take();
-        let Some(result) = built else {
+        let Some(built) = built else {
             if building.began.elapsed() >= QUICK && self.status.stage != Stage::Loading {
                 self.status.stage = Stage::Loading;
                 self.publish(None);
@@ -74,7 +76,7 @@ impl Worker {
             return;
         };
         self.building = None;
-        match result {
+        match built {
             Ok(subject) => self.take_subject(subject, building),
             Err(mistake) => self.take_mistake(mistake, building),
         }
@@ -117,7 +119,7 @@ impl Worker {
         self.publish(None);
     }
 
-    pub fn watch(&mut self, files: &[PathBuf]) {
+    fn watch(&mut self, files: &[PathBuf]) {
         if let Some(watch) = &mut self.watch {
             watch.set(files);
         }
