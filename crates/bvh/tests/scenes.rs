@@ -1,4 +1,4 @@
-//! The generated meshes with their six kinds of rays: every kernel at every quality and vector level finds the same
+//! The generated meshes with their six kinds of rays and random ones: every kernel at every quality and vector level finds the same
 //! bits, and brute force agrees on some. With `JUGGLER_RAYS` (rays of each kind) in the thousands the meshes have the
 //! size that they are measured with: `JUGGLER_RAYS=1_000_000 cargo test --release -p juggler-bvh --test scenes`.
 
@@ -8,7 +8,7 @@ mod common;
 
 use common::mesh::{Kernels, Mesh, rays_to_try};
 use juggler_bvh::{Quality, TriangleBvh, TriangleHit, simd_levels};
-use juggler_math::{Ray, Vec3, vec3};
+use juggler_math::{Aabb, Ray, Vec3, vec3};
 use juggler_raybench::meshes::Recipe;
 use juggler_raybench::rays;
 
@@ -26,17 +26,29 @@ fn check(small: &str, large: &str) {
     let sets = rays::make(&made, &tree, count);
     let mesh = Mesh { positions: made.positions, triangles: made.triangles };
     let kernels = Kernels::all(name, &mesh);
-    for set in sets {
-        for rays in set.rays.chunks(CALL) {
+    let kinds = sets.each_ref().map(|set| (set.kind.name(), &set.rays[..]));
+    let made: usize = kinds.iter().map(|(_, rays)| rays.len()).sum();
+    let across = across(&mesh, (kinds.len() * count).saturating_sub(made));
+    for (kind, rays) in kinds.into_iter().chain([("across", &across[..])]) {
+        for rays in rays.chunks(CALL) {
             let expected: Vec<_> = rays.iter().map(|ray| tree.closest(ray)).collect();
             kernels.iter().for_each(|kernels| kernels.check(rays, &expected));
         }
         let sample = (TESTS / mesh.triangles.len()).max(2);
-        for ray in set.rays.iter().step_by((set.rays.len() / sample).max(1)) {
-            assert_eq!(tree.closest(ray), mesh.closest(ray), "{name}, {}: {ray:?}", set.kind.name());
+        for ray in rays.iter().step_by((rays.len() / sample).max(1)) {
+            assert_eq!(tree.closest(ray), mesh.closest(ray), "{name}, {kind}: {ray:?}");
         }
-        println!("{name}, {} triangles, {}: {} rays", mesh.triangles.len(), set.kind.name(), set.rays.len());
+        println!("{name}, {} triangles, {kind}: {} rays", mesh.triangles.len(), rays.len());
     }
+}
+
+/// Random rays, each from one point of the mesh's box through another: where rays of the other kinds miss, fewer follow
+/// them, and these make up for those.
+fn across(mesh: &Mesh, count: usize) -> Vec<Ray> {
+    let bounds = Aabb::from_points(mesh.positions.iter().copied());
+    let random = &mut common::Random::new(1);
+    let mut point = || (bounds.min + bounds.max) * 0.5 + random.point() * bounds.extent() * 0.5;
+    (0..count).map(|_| (point(), point())).map(|(from, to)| Ray::new(from, (to - from).normalize_or(Vec3::Y))).collect()
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! How long builds take, in turns.
 
-use crate::ffi::{Api, Device};
-use crate::options::Options;
+use crate::ffi::Loaded;
 use crate::targets::Targets;
 use juggler_bvh::Quality;
 use juggler_raybench::Mesh;
@@ -16,22 +15,21 @@ struct Times {
     bytes: usize,
 }
 
-/// Prints a table for each number of threads. Embree's devices are made one after the other, because its number of
-/// threads is one for the whole process.
-pub fn measure(api: &Api, mesh: &Mesh, options: &Options, targets: &mut Targets) -> Result<(), String> {
-    for &threads in &options.build_threads {
-        let device = Device::new(api, threads, mesh)?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
-        println!("\n  build, {threads} threads {:>21}{:>10}{:>10}{:>10}", "wall s", "CPU s", "bytes/tri", "speed");
-        for quality in Quality::ALL {
-            compare(&device, mesh, quality, options.repeats, &pool, targets)?;
-        }
-    }
-    Ok(())
+/// Prints a table for this number of threads, which is Embree's.
+pub fn measure(
+    loaded: &Loaded,
+    mesh: &Mesh,
+    threads: usize,
+    repeats: usize,
+    targets: &mut Targets,
+) -> Result<(), String> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
+    println!("\n  build, {threads} threads {:>21}{:>10}{:>10}{:>10}", "wall s", "CPU s", "bytes/tri", "speed");
+    Quality::ALL.into_iter().try_for_each(|quality| compare(loaded, mesh, quality, repeats, &pool, targets))
 }
 
 fn compare(
-    device: &Device,
+    loaded: &Loaded,
     mesh: &Mesh,
     quality: Quality,
     repeats: usize,
@@ -41,7 +39,7 @@ fn compare(
     let threads = pool.current_num_threads();
     let (mut theirs, mut ours) = (Times::default(), Times::default());
     for _ in 0..repeats {
-        let (scene, elapsed) = device.build(quality, false)?;
+        let (scene, elapsed) = loaded.build(quality, false)?;
         (theirs.bytes, _) = (scene.bytes, theirs.elapsed.push(elapsed));
         let (bvh, elapsed) = pool.install(|| {
             let watch = Stopwatch::start(Of::Process);

@@ -83,13 +83,19 @@ unsafe fn function<F: Copy>(library: &Library, name: &str) -> Result<F, String> 
     unsafe { library.get::<F>(name.as_bytes()) }.map(|symbol| *symbol).map_err(|error| error.to_string())
 }
 
-/// Embree with so many threads to build with, and a mesh in it.
+/// Embree with so many threads to build with. One a process: after a second one, Embree 4.4 keeps a thread busy with
+/// nothing, or builds with other threads than it is asked to.
 pub struct Device<'a> {
     api: &'a Api,
     device: Handle,
-    geometry: Handle,
     /// Bytes that Embree holds now. Boxed, because Embree knows its address.
     bytes: Box<AtomicI64>,
+}
+
+/// A mesh in Embree's memory.
+pub struct Loaded<'d> {
+    device: &'d Device<'d>,
+    geometry: Handle,
 }
 
 /// Called by Embree whenever it takes (positive) or gives back memory.
@@ -100,32 +106,51 @@ unsafe extern "C" fn count_bytes(counter: *mut c_void, bytes: isize, _after: boo
 }
 
 impl<'a> Device<'a> {
-    /// Copies the mesh.
-    pub fn new(api: &'a Api, threads: usize, mesh: &Mesh) -> Result<Self, String> {
+    /// Without meshes.
+    pub fn new(api: &'a Api, threads: usize) -> Result<Self, String> {
         let settings = CString::new(format!("threads={threads}")).map_err(|error| error.to_string())?;
         let bytes = Box::new(AtomicI64::new(0));
         // SAFETY: the string ends with a zero and lives through the call; the counter lives as long as the device.
-        let (device, geometry) = unsafe {
+        let device = unsafe {
             let device = (api.new_device)(settings.as_ptr());
             if device.is_null() {
                 return Err(format!("Embree made no device: error {}", (api.device_error)(null_mut())));
             }
             (api.set_monitor)(device, count_bytes, std::ptr::from_ref::<AtomicI64>(&bytes).cast_mut().cast());
-            (device, (api.new_geometry)(device, TRIANGLES))
+            device
         };
-        let own = Self { api, device, geometry, bytes };
-        own.fill(mesh)?;
-        Ok(own)
+        Ok(Self { api, device, bytes })
     }
 
-    fn fill(&self, mesh: &Mesh) -> Result<(), String> {
-        self.buffer(VERTICES, FLOAT3, mesh.positions.iter().map(|position| position.to_array()))?;
-        self.buffer(INDICES, UINT3, mesh.triangles.iter().copied())?;
+    /// Copies the mesh.
+    pub fn load(&self, mesh: &Mesh) -> Result<Loaded<'_>, String> {
+        // SAFETY: the device lives.
+        let geometry = unsafe { (self.api.new_geometry)(self.device, TRIANGLES) };
+        let own = Loaded { device: self, geometry };
+        own.buffer(VERTICES, FLOAT3, mesh.positions.iter().map(|position| position.to_array()))?;
+        own.buffer(INDICES, UINT3, mesh.triangles.iter().copied())?;
         // SAFETY: the geometry is this device's, and its buffers are filled.
-        unsafe { (self.api.commit_geometry)(self.geometry) };
-        self.checked(())
+        unsafe { (self.api.commit_geometry)(geometry) };
+        self.checked(own)
     }
 
+    /// `4.4.0`.
+    pub fn version(&self) -> String {
+        // SAFETY: the device lives; 1 to 3 are the parts of the version.
+        let part = |part| unsafe { (self.api.device_property)(self.device, part) };
+        format!("{}.{}.{}", part(1), part(2), part(3))
+    }
+
+    fn checked<T>(&self, value: T) -> Result<T, String> {
+        // SAFETY: the device lives.
+        match unsafe { (self.api.device_error)(self.device) } {
+            0 => Ok(value),
+            error => Err(format!("Embree's error {error}")),
+        }
+    }
+}
+
+impl Loaded<'_> {
     /// A new buffer with triples of 32 bits in it.
     fn buffer<T: Copy>(
         &self,
@@ -135,7 +160,7 @@ impl<'a> Device<'a> {
     ) -> Result<(), String> {
         let count = items.len();
         // SAFETY: the geometry is this device's; the buffer has `count` items of 12 bytes.
-        let start = unsafe { (self.api.new_buffer)(self.geometry, kind, 0, format, 12, count) }.cast::<[T; 3]>();
+        let start = unsafe { (self.device.api.new_buffer)(self.geometry, kind, 0, format, 12, count) }.cast::<[T; 3]>();
         if start.is_null() {
             return Err("Embree has no memory for the mesh".into());
         }
@@ -146,38 +171,24 @@ impl<'a> Device<'a> {
         Ok(())
     }
 
-    /// `4.4.0`.
-    pub fn version(&self) -> String {
-        // SAFETY: the device lives; 1 to 3 are the parts of the version.
-        let part = |part| unsafe { (self.api.device_property)(self.device, part) };
-        format!("{}.{}.{}", part(1), part(2), part(3))
-    }
-
     /// Builds a tree; how long that took.
     pub fn build(&self, quality: Quality, robust: bool) -> Result<(Scene<'_>, Elapsed), String> {
-        let before = self.bytes.load(Ordering::Relaxed);
+        let Device { api, device, bytes } = self.device;
+        let before = bytes.load(Ordering::Relaxed);
         // SAFETY: device and geometry live; the numbers are members of `RTCSceneFlags` and `RTCBuildQuality`.
         let scene = unsafe {
-            let scene = (self.api.new_scene)(self.device);
-            (self.api.set_flags)(scene, if robust { 1 << 2 } else { 0 });
-            (self.api.set_quality)(scene, quality_of(quality));
-            (self.api.attach)(scene, self.geometry);
+            let scene = (api.new_scene)(*device);
+            (api.set_flags)(scene, if robust { 1 << 2 } else { 0 });
+            (api.set_quality)(scene, quality_of(quality));
+            (api.attach)(scene, self.geometry);
             scene
         };
         let watch = Stopwatch::start(Of::Process);
         // SAFETY: as above.
-        unsafe { (self.api.commit_scene)(scene) };
+        unsafe { (api.commit_scene)(scene) };
         let elapsed = watch.elapsed();
-        let bytes = usize::try_from(self.bytes.load(Ordering::Relaxed) - before).unwrap_or(0);
-        self.checked((Scene { device: self, scene, bytes }, elapsed))
-    }
-
-    fn checked<T>(&self, value: T) -> Result<T, String> {
-        // SAFETY: the device lives.
-        match unsafe { (self.api.device_error)(self.device) } {
-            0 => Ok(value),
-            error => Err(format!("Embree's error {error}")),
-        }
+        let taken = usize::try_from(bytes.load(Ordering::Relaxed) - before).unwrap_or(0);
+        self.device.checked((Scene { device: self.device, scene, bytes: taken }, elapsed))
     }
 }
 
@@ -201,11 +212,15 @@ const FLOAT3: c_int = 0x9003;
 
 impl Drop for Device<'_> {
     fn drop(&mut self) {
-        // SAFETY: both were made in `new` and are let go once; scenes borrow the device, so none is left.
-        unsafe {
-            (self.api.release_geometry)(self.geometry);
-            (self.api.release_device)(self.device);
-        }
+        // SAFETY: made in `new`, let go once; meshes and scenes borrow the device, so none is left.
+        unsafe { (self.api.release_device)(self.device) };
+    }
+}
+
+impl Drop for Loaded<'_> {
+    fn drop(&mut self) {
+        // SAFETY: made in `load`, let go once; scenes keep what they need of it.
+        unsafe { (self.device.api.release_geometry)(self.geometry) };
     }
 }
 

@@ -1,4 +1,5 @@
-//! Juggler's rays against Embree 4's, in turns, on the same meshes and the same rays, in one process.
+//! Juggler's rays against Embree 4's, in turns, on the same meshes and the same rays, in one process
+//! (for each number of threads that builds are timed with, one).
 //!
 //! Embree is not needed to build this; the library is opened when `EMBREE_LIB` says where it is. The wheel `embreex` from
 //! the Python package index holds one:
@@ -23,13 +24,14 @@ mod targets;
 mod tracers;
 
 use check::Differences;
-use ffi::{Api, Device, Scene};
+use ffi::{Api, Device, Loaded, Scene};
 use juggler_bvh::TriangleBvh;
 use juggler_raybench::kernel;
 use juggler_raybench::meshes::Recipe;
-use juggler_raybench::{RaySet, rays};
+use juggler_raybench::{Mesh, RaySet, rays};
 use options::{Call, Options};
-use std::process::ExitCode;
+use std::ffi::OsStr;
+use std::process::{Command, ExitCode};
 use targets::Targets;
 use tracers::{Tracer, Tree};
 
@@ -38,17 +40,7 @@ fn main() -> ExitCode {
         println!("skipped: EMBREE_LIB does not say where Embree 4 is; docs/benchmarks.md says where to get it");
         return ExitCode::SUCCESS;
     };
-    let run = || {
-        let options = Options::read(std::env::args().skip(1))?;
-        let api = Api::open(&path)?;
-        let mut targets = Targets::default();
-        for (name, recipe) in &options.scenes {
-            scene(&api, name, recipe, &options, &mut targets)?;
-        }
-        targets.print();
-        Ok::<(), String>(())
-    };
-    match run() {
+    match run(&path) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -57,16 +49,55 @@ fn main() -> ExitCode {
     }
 }
 
-fn scene(api: &Api, name: &str, recipe: &Recipe, options: &Options, targets: &mut Targets) -> Result<(), String> {
+fn run(path: &OsStr) -> Result<(), String> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let options = Options::read(words.iter().cloned())?;
+    // Those threads of Embree that trace are ours.
+    let threads = if options.rays > 0 { 1 } else { options.build_threads.first().copied().unwrap_or(1) };
+    let api = Api::open(path)?;
+    let device = Device::new(&api, threads)?;
+    let mut targets = Targets::default();
+    for (name, recipe) in &options.scenes {
+        scene(&device, threads, (name, recipe), &options, &mut targets)?;
+    }
+    targets.print();
+    options.build_threads.iter().filter(|other| **other != threads).try_for_each(|other| elsewhere(&words, *other))
+}
+
+/// Times the builds with another number of threads, in a process with an Embree of its own.
+fn elsewhere(words: &[String], threads: usize) -> Result<(), String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let mut command = Command::new(program);
+    let status = command.args(words).arg(format!("build={threads}")).arg("rays=0").status();
+    let done = status.map_err(|error| error.to_string())?.success();
+    if done { Ok(()) } else { Err(format!("the builds with {threads} threads failed")) }
+}
+
+fn scene(
+    device: &Device,
+    threads: usize,
+    (name, recipe): (&str, &Recipe),
+    options: &Options,
+    targets: &mut Targets,
+) -> Result<(), String> {
     let mesh = recipe.make();
     println!("\n{name}: {} triangles, {:?} trees", mesh.triangles.len(), options.quality);
-    builds::measure(api, &mesh, options, targets)?;
-    let device = Device::new(api, 1, &mesh)?;
-    let (fast, _) = device.build(options.quality, false)?;
-    let (robust, _) = device.build(options.quality, true)?;
+    let loaded = device.load(&mesh)?;
+    if options.build_threads.contains(&threads) {
+        builds::measure(&loaded, &mesh, threads, options.repeats, targets)?;
+    }
+    if options.rays == 0 {
+        return Ok(());
+    }
     println!("\n  answers of Juggler and of Embree {}", device.version());
-    let bvh = kernel::build(&mesh, options.quality).map_err(|error| error.to_string())?;
-    let mut sets = rays::make(&mesh, &bvh, options.rays).to_vec();
+    trace(&loaded, &mesh, options, targets)
+}
+
+fn trace(loaded: &Loaded, mesh: &Mesh, options: &Options, targets: &mut Targets) -> Result<(), String> {
+    let (fast, _) = loaded.build(options.quality, false)?;
+    let (robust, _) = loaded.build(options.quality, true)?;
+    let bvh = kernel::build(mesh, options.quality).map_err(|error| error.to_string())?;
+    let mut sets = rays::make(mesh, &bvh, options.rays).to_vec();
     let bvhs = kernel::with_tests(bvh);
     sets.retain(|set| options.kinds.contains(&set.kind));
     for (test, bvh) in &bvhs {

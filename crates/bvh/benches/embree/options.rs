@@ -51,7 +51,7 @@ pub struct Options {
     /// Of Juggler; of Embree those that they are compared with.
     pub calls: Vec<Call>,
     pub quality: Quality,
-    /// Camera rays.
+    /// Camera rays; 0: only builds are timed.
     pub rays: usize,
     pub repeats: usize,
     /// Numbers of threads to trace with.
@@ -62,7 +62,7 @@ pub struct Options {
 
 pub const HELP: &str = "words after `--`: scenes (blob, classroom, hall, stadium, hairball, terrain, NAME:SIZE, all),
 kinds (primary, shadow, ao, diffuse, diffuse2, random), our kernels (single, batch, packet),
-rays=100000 repeats=5 threads=1,2 build=1,2 (build=0: none) quality=fast|balanced|best";
+rays=100000 (rays=0: none) repeats=5 threads=1,2 build=1,2 (build=0: none) quality=fast|balanced|best";
 
 impl Options {
     /// Reads all words; those that begin with a dash are cargo's.
