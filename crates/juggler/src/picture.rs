@@ -240,9 +240,9 @@ impl Picture {
         let [width, height] = self.size();
         let mut digest = Digest::new(width, height);
         let schedule = Schedule { scheduler, band_pixels: self.band_pixels };
-        render::render(&self.job(), self.region, schedule, control, |band: &[Rgb]| {
-            digest.update(band);
-            rows(band)
+        render::render(&self.job(), self.region, schedule, control, |band| {
+            digest.update(&band);
+            rows(&band)
         })
         .map(|()| digest.finish())
     }

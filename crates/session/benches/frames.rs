@@ -1,6 +1,7 @@
 //! How fast a session follows: frames a second while the camera moves, and the time from an edit to the first frame.
 //!
-//! `cargo bench -p juggler-session --bench frames [-- THREADS]` prints two tables.
+//! `cargo bench -p juggler-session --bench frames [-- THREADS] [SCENE]` prints two tables, or of one scene its frames
+//! a second.
 #![allow(clippy::print_stdout, reason = "that is its purpose")]
 
 use juggler::scene::built_in_scenes;
@@ -16,10 +17,12 @@ const SIDE: u32 = 708;
 
 fn main() -> std::io::Result<()> {
     let threads = std::env::args().skip(1).find_map(|word| word.parse().ok()).unwrap_or(2);
+    let one = std::env::args().skip(1).find(|word| built_in_scenes().iter().any(|scene| scene.name == *word));
     let options = |budget| Options { size: Some([640, 480]), threads, budget, ..Options::default() };
     println!("640 x 480, {threads} threads, one ray through each pixel's centre\n");
     println!("{:<34} {:>9} {:>9}", "full resolution while it moves", "frames/s", "slowest");
-    for name in built_in_scenes().iter().map(|scene| scene.name).filter(|name| name.starts_with("scalablitz-")) {
+    let wanted = |name: &&str| one.as_ref().map_or(name.starts_with("scalablitz-"), |one| one == name);
+    for name in built_in_scenes().iter().map(|scene| scene.name).filter(wanted) {
         // A budget that nothing exceeds: never coarse.
         let session = Session::open(name, options(Duration::from_secs(100)));
         settle(&session);
@@ -29,6 +32,9 @@ fn main() -> std::io::Result<()> {
         times.sort();
         let slowest = times[FRAMES * 95 / 100].as_secs_f64() * 1e3;
         println!("{name:<34} {:>9.1} {slowest:>6.1} ms", FRAMES as f64 / total.as_secs_f64());
+    }
+    if one.is_some() {
+        return Ok(());
     }
     println!("\n{:<34} {:>9} {:>9}", "from an edit to its frame", "median", "slowest");
     for scene in built_in_scenes() {

@@ -3,7 +3,7 @@
 use crate::Channel;
 use crate::screen::{Draft, color_of};
 use juggler::Picture;
-use juggler::math::{Ray, Rgb, UVec2};
+use juggler::math::{Ray, UVec2};
 use juggler::tracer::film::Rect;
 use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, Path};
 use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stopped};
@@ -47,10 +47,15 @@ pub fn draw(
     };
     let job = Job { camera: &camera, integrator, samples: 1, ..job };
     let region = Rect { x: 0, y: 0, width, height };
-    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    let mut pixels = Vec::new();
     let schedule = Schedule { scheduler, ..Schedule::default() };
-    render::render(&job, region, schedule, control, |rows: &[Rgb]| {
-        pixels.extend_from_slice(rows);
+    render::render(&job, region, schedule, control, |rows| {
+        if pixels.is_empty() {
+            // All of it, mostly.
+            pixels = rows;
+        } else {
+            pixels.extend(rows);
+        }
         Ok::<(), Stopped>(())
     })?;
     if channel == Channel::Depth {

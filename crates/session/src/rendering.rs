@@ -99,7 +99,7 @@ impl Worker {
 
     fn toner_of(&self, picture: &Picture) -> Toner {
         let of_light = self.follows_light() || self.status.channel == Channel::Albedo;
-        if of_light { Toner::new(picture.tone()) } else { Toner::plain() }
+        self.toner.toned(if of_light { picture.tone() } else { &screen::PLAIN })
     }
 
     /// A film for the picture as it is now, with the samples that are there; only the region gets more.

@@ -5,29 +5,38 @@ use juggler::imaging::tone::{AnyCurve, Linear, Quantizer};
 use juggler::math::Rgb;
 use juggler::tracer::film::{Film, Tile};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Pixels that are worth a thread's trip.
 const PIECE: usize = 1 << 14;
 /// Relative error that channel noise shows as white.
 const MOST_NOISE: f64 = 0.1;
 
-/// From linear light to bytes of the screen.
-pub struct Toner(Quantizer);
+/// Shows values as they are, 0 to 1: for what is not light.
+pub const PLAIN: Tone = Tone { curve: AnyCurve::Linear(Linear {}), exposure_stops: 0.0 };
+
+/// From linear light to bytes of the screen. Costs a millisecond to make, and nothing to copy.
+#[derive(Clone)]
+pub struct Toner {
+    tone: Tone,
+    quantizer: Arc<Quantizer>,
+}
 
 impl Toner {
     /// By a tone curve and exposure.
     pub fn new(tone: &Tone) -> Self {
-        Self(Quantizer::new(tone, 255))
+        Self { tone: tone.clone(), quantizer: Arc::new(Quantizer::new(tone, 255)) }
     }
 
-    /// Values as they are, 0 to 1: for what is not light.
-    pub fn plain() -> Self {
-        Self::new(&Tone { curve: AnyCurve::Linear(Linear {}), exposure_stops: 0.0 })
+    /// One for this tone: itself, if it is.
+    #[must_use]
+    pub fn toned(&self, tone: &Tone) -> Self {
+        if self.tone == *tone { self.clone() } else { Self::new(tone) }
     }
 
     /// One pixel: red, green, blue, opaque.
     pub fn rgba(&self, pixel: Rgb) -> [u8; 4] {
-        let [r, g, b] = pixel.to_array().map(|value| self.0.level(value) as u8);
+        let [r, g, b] = pixel.to_array().map(|value| self.quantizer.level(value) as u8);
         [r, g, b, 255]
     }
 

@@ -94,7 +94,7 @@ impl Board {
     pub fn resume(&mut self, outline: &str) -> Result<(), String> {
         let outline: Outline = serde_json::from_str(outline).map_err(|error| error.to_string())?;
         if outline.tone != self.outline.tone {
-            self.toner = Toner::new(&outline.tone);
+            self.toner = self.toner.toned(&outline.tone);
             self.film.show(&self.toner);
             self.coarse.show(&self.toner);
         }

@@ -1,5 +1,6 @@
 //! How a picture is cut into tiles.
 
+use juggler_math::Rgb;
 use serde::{Deserialize, Serialize};
 
 /// Edge of a tile in pixels.
@@ -33,6 +34,22 @@ impl Rect {
         let width = end(self.x, self.width, other.x, other.width).saturating_sub(x);
         let height = end(self.y, self.height, other.y, other.height).saturating_sub(y);
         Self { x, y, width, height }
+    }
+
+    /// Copies its `pixels` to their places in a `band` that holds it; both row by row.
+    pub fn copy(&self, pixels: &[Rgb], band: &Self, target: &mut [Rgb]) {
+        let width = self.width as usize;
+        let place = |row: usize| {
+            let row = (self.y as usize + row).checked_sub(band.y as usize)?;
+            Some(row * band.width as usize + self.x.checked_sub(band.x)? as usize)
+        };
+        for (row, line) in pixels.chunks_exact(width.max(1)).enumerate() {
+            if let Some(start) = place(row)
+                && let Some(target) = target.get_mut(start..start + width)
+            {
+                target.copy_from_slice(line);
+            }
+        }
     }
 }
 

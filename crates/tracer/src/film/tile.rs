@@ -153,18 +153,7 @@ impl Tile {
 
     /// Writes the finished pixels to their places in a `band` that holds the tile; its pixels row by row.
     pub fn copy_to(&self, band: &Rect, pixels: &mut [Rgb]) {
-        let (means, width) = (self.means(), self.pixels.width as usize);
-        let place = |row: usize| {
-            let row = (self.pixels.y as usize + row).checked_sub(band.y as usize)?;
-            Some(row * band.width as usize + self.pixels.x.checked_sub(band.x)? as usize)
-        };
-        for (row, line) in means.chunks_exact(width.max(1)).enumerate() {
-            if let Some(start) = place(row)
-                && let Some(pixels) = pixels.get_mut(start..start + width)
-            {
-                pixels.copy_from_slice(line);
-            }
-        }
+        self.pixels.copy(&self.means(), band, pixels);
     }
 
     fn total(&self, pixel: usize) -> [f64; 3] {

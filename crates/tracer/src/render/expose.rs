@@ -18,12 +18,13 @@ pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &m
     if job.samples == 1 {
         return expose_centers(job, work, slots, queue);
     }
+    let picture = Sampler::new(job.pattern, job.seed);
     let mut places = [Vec2::ZERO; PLACES];
     let mut slot = 0;
     let mut at = slots.start;
     while at < slots.end {
         let pixel = at / samples;
-        let exposure = Pixel::new(job, work, Pixel::place(work, pixel));
+        let exposure = Pixel::new(job, work, &picture, Pixel::place(work, pixel));
         let count = (slots.end.min((pixel + 1) * samples) - at) as u32;
         exposure.expose(work.samples.start + (at % samples) as u32, slot..slot + count, &mut places, queue);
         slot += count;
@@ -33,6 +34,7 @@ pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &m
 
 /// One ray through the centre of each of the pixels `range`.
 fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) {
+    let picture = Sampler::new(job.pattern, job.seed);
     let mut next = Pixel::place(work, range.start);
     for start in range.clone().step_by(LANES) {
         let count = LANES.min((range.end - start) as usize);
@@ -43,7 +45,7 @@ fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) 
             if next.x == work.pixels.width {
                 next = UVec2::new(0, next.y + 1);
             }
-            Pixel::new(job, work, place)
+            Pixel::new(job, work, &picture, place)
         });
         let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
         let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
@@ -69,10 +71,9 @@ impl<'j> Pixel<'j> {
     }
 
     /// The pixel at this place in the work's rectangle.
-    fn new(job: &'j Job, work: &Work, place: UVec2) -> Self {
+    fn new(job: &'j Job, work: &Work, picture: &Sampler, place: UVec2) -> Self {
         let pixel = UVec2::new(work.pixels.x, work.pixels.y).wrapping_add(place);
-        let stream = Sampler::new(job.pattern, job.seed, pixel);
-        Self { job, center: pixel.as_vec2() + 0.5, stream }
+        Self { job, center: pixel.as_vec2() + 0.5, stream: picture.pixel(pixel) }
     }
 
     /// The numbers of a sample from `dimension` on.

@@ -5,8 +5,8 @@ use super::{Control, Job, Work};
 use crate::film::Rect;
 use juggler_math::Rgb;
 use rayon::prelude::*;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// Pixels that are held in memory at once where nobody says, at least a row of tiles of them.
 pub const BAND_PIXELS: u64 = 4 << 20;
@@ -56,7 +56,7 @@ pub fn render<E: From<Stopped>>(
     region: Rect,
     schedule: Schedule,
     control: &Control,
-    mut rows: impl FnMut(&[Rgb]) -> Result<(), E>,
+    mut rows: impl FnMut(Vec<Rgb>) -> Result<(), E>,
 ) -> Result<(), E> {
     let engines = Mutex::new(Vec::new());
     for band in bands(region, schedule.band_pixels) {
@@ -64,8 +64,14 @@ pub fn render<E: From<Stopped>>(
         let draw = |pixels: Rect| {
             let recycled = lock(&engines).pop();
             let mut engine: Engine = recycled.unwrap_or_else(|| Engine::new(job));
-            if let Ok(tile) = engine.render(&Work::first(pixels, job.samples), control) {
-                tile.copy_to(&band, &mut lock(&film));
+            // Nobody waits while means are taken.
+            let means = if job.samples == 1 {
+                engine.render_single(pixels, control)
+            } else {
+                engine.render(&Work::first(pixels, job.samples), control).map(|tile| tile.means())
+            };
+            if let Ok(means) = means {
+                pixels.copy(&means, &band, &mut lock(&film));
             }
             lock(&engines).push(engine);
         };
@@ -77,7 +83,7 @@ pub fn render<E: From<Stopped>>(
         if control.is_cancelled() {
             return Err(Stopped.into());
         }
-        rows(&lock(&film))?;
+        rows(film.into_inner().unwrap_or_else(PoisonError::into_inner))?;
     }
     Ok(())
 }
@@ -90,7 +96,7 @@ pub fn band_bytes(region: Rect, pixels: u64) -> u64 {
 
 /// A poisoned lock only says that another thread panicked, which rayon passes on anyway.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Cuts a region into bands of whole rows that fit in memory.

@@ -8,7 +8,7 @@
 
 use super::expose::expose;
 use super::{Control, Job, Rays, Stopped, Work};
-use crate::film::{Accumulator, Run, Tile, runs};
+use crate::film::{Accumulator, Rect, Run, Tile, runs};
 use crate::integrator::{Emit, Harvest, Queue};
 use crate::world::WorldHit;
 use juggler_math::Rgb;
@@ -50,7 +50,24 @@ impl<'j> Engine<'j> {
     /// Renders one piece of work.
     pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
         let mut film = Exposed::new(work);
-        let samples = u64::from(work.samples.end.saturating_sub(work.samples.start));
+        self.passes(work, control, |radiance| film.add(radiance))?;
+        Ok(film.tile())
+    }
+
+    /// The pixels of a picture of one sample each, row by row. They need no sums, only what a tile's means would be.
+    pub fn render_single(&mut self, pixels: Rect, control: &Control) -> Result<Vec<Rgb>, Stopped> {
+        let mut means = Vec::with_capacity(pixels.area() as usize);
+        self.passes(&Work::first(pixels, 1), control, |radiance| {
+            let lost = radiance.iter().filter(|sample| !sample.is_finite()).count() as u64;
+            means.extend(radiance.iter().map(|sample| if sample.is_finite() { *sample } else { Rgb::BLACK }));
+            lost
+        })?;
+        Ok(means)
+    }
+
+    /// Traces all samples and hands them to `take` in order, which says how many were no finite numbers.
+    fn passes(&mut self, work: &Work, control: &Control, mut take: impl FnMut(&[Rgb]) -> u64) -> Result<(), Stopped> {
+        let samples = work.samples.len() as u64;
         let end = work.pixels.area() * samples;
         let mut first = 0;
         while first < end {
@@ -59,13 +76,13 @@ impl<'j> Engine<'j> {
             }
             let slots = first..end.min(first + PASS);
             let count = slots.end - slots.start;
-            self.pass(work, samples, slots.clone());
-            self.rays.not_finite += film.add(samples, slots, &self.harvest.radiance);
+            self.pass(work, samples, slots);
+            self.rays.not_finite += take(&self.harvest.radiance);
             self.rays.camera += count;
             control.add(count, &std::mem::take(&mut self.rays));
             first += count;
         }
-        Ok(film.tile())
+        Ok(())
     }
 
     /// Traces the samples `slots` to their ends.
@@ -183,6 +200,9 @@ struct Exposed<'w> {
     runs: Vec<Run>,
     /// Of the pixel whose samples come now.
     pixel: Accumulator,
+    /// Which pixel that is, and how many of its samples are to come.
+    number: usize,
+    missing: usize,
 }
 
 impl<'w> Exposed<'w> {
@@ -190,24 +210,28 @@ impl<'w> Exposed<'w> {
         let area = work.pixels.area() as usize;
         let run = |samples| Run { samples, sums: Vec::with_capacity(area) };
         let runs = runs(work.samples.clone()).into_iter().map(run).collect();
-        Self { work, runs, pixel: Accumulator::default() }
+        let mut film = Self { work, runs, pixel: Accumulator::default(), number: 0, missing: 0 };
+        film.begin();
+        film
     }
 
-    /// Adds the finished samples `slots` to their pixels. Returns how many were no finite numbers.
-    fn add(&mut self, samples: u64, slots: Range<u64>, mut radiance: &[Rgb]) -> u64 {
-        let (mut at, mut lost) = (slots.start, 0);
+    fn begin(&mut self) {
+        self.missing = self.work.samples.len();
+        self.pixel.begin(self.work.samples.start, self.work.open.get(self.number));
+    }
+
+    /// Adds the next finished samples to their pixels. Returns how many were no finite numbers.
+    fn add(&mut self, mut radiance: &[Rgb]) -> u64 {
+        let mut lost = 0;
         while !radiance.is_empty() {
-            let sample = at % samples;
-            if sample == 0 {
-                let open = self.work.open.get((at / samples) as usize);
-                self.pixel.begin(self.work.samples.start, open);
-            }
-            let (now, later) = radiance.split_at(((samples - sample) as usize).min(radiance.len()));
+            let (now, later) = radiance.split_at(self.missing.min(radiance.len()));
             lost += self.pixel.add(now);
-            at += now.len() as u64;
+            self.missing -= now.len();
             radiance = later;
-            if at.is_multiple_of(samples) {
+            if self.missing == 0 {
                 self.runs.iter_mut().zip(self.pixel.sums()).for_each(|(run, sum)| run.sums.push(sum));
+                self.number += 1;
+                self.begin();
             }
         }
         lost

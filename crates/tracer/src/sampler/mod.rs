@@ -51,11 +51,15 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// The numbers of sample 0 of a pixel.
-    pub fn new(pattern: Pattern, seed: u64, pixel: UVec2) -> Self {
-        let seed = hash::combine(seed as u32, (seed >> 32) as u32);
-        let seed = hash::combine(hash::combine(seed, pixel.x), pixel.y);
-        Self { seed, index: 0, dimension: 0, pattern }
+    /// Of a whole picture; its pixels have [streams of their own](Self::pixel).
+    pub fn new(pattern: Pattern, seed: u64) -> Self {
+        Self { seed: hash::combine(seed as u32, (seed >> 32) as u32), index: 0, dimension: 0, pattern }
+    }
+
+    /// The numbers of sample 0 of a pixel of this picture.
+    #[inline]
+    pub fn pixel(&self, pixel: UVec2) -> Self {
+        Self { seed: hash::combine(hash::combine(self.seed, pixel.x), pixel.y), ..*self }
     }
 
     /// The numbers of sample `index` of the same pixel, from the first dimension on.
@@ -118,7 +122,7 @@ mod tests {
     use super::*;
 
     fn points(pattern: Pattern, count: u32) -> Vec<Vec2> {
-        let pixel = Sampler::new(pattern, 7, UVec2::new(3, 5));
+        let pixel = Sampler::new(pattern, 7).pixel(UVec2::new(3, 5));
         (0..count)
             .map(|i| {
                 let mut sampler = pixel.sample(i);
@@ -148,7 +152,7 @@ mod tests {
     #[test]
     fn stratified_fills_every_cell_once_a_set() {
         for side in [1, 3, 8] {
-            let pixel = Sampler::new(Pattern::Stratified { side }, 1, UVec2::new(9, 9));
+            let pixel = Sampler::new(Pattern::Stratified { side }, 1).pixel(UVec2::new(9, 9));
             for dimension in 0..3 {
                 let draw = |i: u32| {
                     let mut sampler = pixel.sample(i);
@@ -164,7 +168,7 @@ mod tests {
     #[test]
     fn points_in_a_row_are_the_points_one_by_one() {
         for pattern in [Pattern::Independent, Pattern::Sobol, Pattern::Stratified { side: 5 }] {
-            let pixel = Sampler::new(pattern, 5, UVec2::new(8, 1));
+            let pixel = Sampler::new(pattern, 5).pixel(UVec2::new(8, 1));
             for first in [0, 3, 24, 70] {
                 let mut points = [Vec2::ZERO; 60];
                 pixel.first_points(first, &mut points);
@@ -179,7 +183,7 @@ mod tests {
         for pattern in [Pattern::Independent, Pattern::Sobol, Pattern::Stratified { side: 8 }] {
             let all: Vec<Vec2> = (0..64)
                 .flat_map(|x| {
-                    let pixel = Sampler::new(pattern, 3, UVec2::new(x, 1));
+                    let pixel = Sampler::new(pattern, 3).pixel(UVec2::new(x, 1));
                     (0..64).map(move |i| pixel.sample(i).branch(2).next_2d())
                 })
                 .collect();
@@ -195,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_sample_depends_on_its_address_alone() {
-        let pixel = Sampler::new(Pattern::Sobol, 11, UVec2::new(4, 2));
+        let pixel = Sampler::new(Pattern::Sobol, 11).pixel(UVec2::new(4, 2));
         let mut first = pixel.sample(5);
         first.next_2d();
         let second = first.next_2d();
@@ -204,6 +208,9 @@ mod tests {
         assert_eq!(again.next_2d(), second);
         assert_ne!(pixel.sample(6).next_2d(), pixel.sample(5).next_2d());
         assert_ne!(pixel.sample(5).branch(0).next_2d(), pixel.sample(5).branch(1).next_2d());
-        assert_ne!(Sampler::new(Pattern::Sobol, 1 << 32, UVec2::ZERO), Sampler::new(Pattern::Sobol, 0, UVec2::ZERO));
+        assert_ne!(
+            Sampler::new(Pattern::Sobol, 1 << 32).pixel(UVec2::ZERO),
+            Sampler::new(Pattern::Sobol, 0).pixel(UVec2::ZERO)
+        );
     }
 }
