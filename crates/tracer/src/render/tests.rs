@@ -5,14 +5,14 @@ use crate::background::{AnyBackground, Solid};
 use crate::bsdf::fresnel;
 use crate::camera::{AnyCamera, Perspective};
 use crate::film::{Box as BoxFilter, Reconstruction};
-use crate::integrator::{AnyIntegrator, Classic};
+use crate::integrator::{AnyIntegrator, Classic, Emit, Integrator, Path};
 use crate::light::AnyLight;
 use crate::material::{AnyMaterial, MaterialCompiler};
 use crate::sampler::{Pattern, Sobol, Spread};
 use crate::shape::AnyShape;
 use crate::texture::TextureTable;
-use crate::world::Object;
-use juggler_math::{Rgb, Transform, UVec2, Vec3};
+use crate::world::{Object, Vertex};
+use juggler_math::{Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
 fn read<T: DeserializeOwned>(json: &str) -> T {
@@ -209,4 +209,32 @@ fn a_single_sample_looks_through_the_pixels_centre() {
     let all = pixels(&world, &camera, &Classic::default().into(), size, 1);
     let lit: Vec<usize> = (0..9).filter(|i| !all[*i].is_black()).collect();
     assert_eq!(lit, [4]);
+}
+
+/// An integrator whose light is no number in every third column, and less than nothing in others.
+struct Broken;
+
+impl Integrator for Broken {
+    fn vertex(&self, _: &World, _: &Ray, _: &Path, _: &Vertex, _: &mut Emit) {}
+
+    fn escape(&self, _: &World, ray: &Ray, emit: &mut Emit) {
+        let column = (ray.direction.x * 40.0).floor() as i32;
+        emit.add(Rgb::splat(if column.rem_euclid(3) == 0 { f32::NAN } else { column as f32 }));
+    }
+}
+
+#[test]
+fn a_picture_of_single_samples_is_the_means_of_its_tiles() {
+    let (busy, size) = (busy(), UVec2::new(40, 33));
+    let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
+    let pixels = Rect { x: 2, y: 1, width: 38, height: 32 };
+    let classic: AnyIntegrator = Classic { max_depth: 3, ..Classic::default() }.into();
+    for (integrator, lost) in [(&*classic, false), (&Broken as &dyn Integrator, true)] {
+        let job = Job { integrator, ..job(&busy, &camera, &classic, 1) };
+        let (one, two) = (Control::default(), Control::default());
+        let single = wavefront::Engine::new(&job).render_single(pixels, &one).unwrap();
+        assert_eq!(single, job.render(&Work::first(pixels, 1), &two).unwrap().means());
+        assert_eq!(one.rays(), two.rays());
+        assert_eq!(one.rays().not_finite > 0, lost);
+    }
 }
