@@ -21,7 +21,7 @@ pub struct RenderArgs {
     /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
-    /// Where the picture goes; the ending says the format, `-` is standard output [default: the scene's name.png]
+    /// Where the picture goes, or the film (.gif, .apng); the ending says the format, `-` is standard output [default: the scene's name.png]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Option<String>,
 
@@ -36,6 +36,14 @@ pub struct RenderArgs {
     /// Quality of a JPEG
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100), help_heading = "Output")]
     pub quality: Option<u8>,
+
+    /// Frames a second of a film [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = value::pace, help_heading = "Output")]
+    pub fps: Option<f64>,
+
+    /// How often a film is shown; 0 for over and over [default: 0]
+    #[arg(long, value_name = "N", help_heading = "Output")]
+    pub plays: Option<u16>,
 
     /// How light becomes the picture's colours
     #[arg(long, value_name = "CURVE", help_heading = "Output")]

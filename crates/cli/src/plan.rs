@@ -2,9 +2,11 @@
 
 mod parts;
 mod product;
+mod reel;
 
 pub use parts::{Checkpoint, Cut, Shard};
 pub use product::{Encoding, PART_ENDING, Product};
+pub use reel::Reel;
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
@@ -34,6 +36,8 @@ pub struct Plan {
     pub output: String,
     /// What it holds.
     pub product: Product,
+    /// The film that the pictures are frames of.
+    pub reel: Option<Reel>,
     /// How long rendering may take.
     pub time: Option<Duration>,
     /// The picture or part whose numbers of samples are taken.
@@ -90,10 +94,15 @@ impl Plan {
             return Err(Failure::Wrong("the output has no name".into()));
         }
         output::at_most_one_stream(&output, args.stats.as_deref())?;
-        let product = Product::new(&args, &output)?;
+        let reel = Reel::new(&args, &output)?;
+        let output = reel.as_ref().map_or(output, Reel::frames);
+        let product = match reel {
+            Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?),
+            None => Product::new(&args, &output)?,
+        };
         let (cut, checkpoint) = (Cut::new(&args, product)?, Checkpoint::new(&args)?);
         let shard = Shard::new(args.shard, parts::variable)?;
-        let moments = Moments::new(&args, &output)?;
+        let moments = Moments::new(&args, &output, reel.is_some())?;
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
             settings: settings(&args, product),
@@ -101,6 +110,7 @@ impl Plan {
             moments,
             output,
             product,
+            reel,
             time: args.time.map(Duration::from_secs_f64),
             samples_from: args.samples_from,
             checkpoint,
@@ -195,7 +205,8 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
 }
 
 impl Moments {
-    fn new(args: &RenderArgs, output: &str) -> Result<Self, Failure> {
+    /// Of a film, all frames where nothing else is said.
+    fn new(args: &RenderArgs, output: &str, is_film: bool) -> Result<Self, Failure> {
         match (args.frames, args.frame, args.at) {
             (Some(_), ..) if output == STANDARD_OUTPUT => {
                 Err(Failure::Wrong("several frames need files: standard output holds one picture".into()))
@@ -203,6 +214,7 @@ impl Moments {
             (Some(range), ..) => Ok(Self::Frames(range)),
             (_, Some(frame), _) => Ok(Self::Frame(f64::from(frame))),
             (_, _, Some(seconds)) => Ok(Self::At(seconds)),
+            _ if is_film => Ok(Self::Frames(FrameRange { first: 0, end: None })),
             _ => Ok(Self::Frame(0.0)),
         }
     }
@@ -251,6 +263,19 @@ mod tests {
         assert_eq!(encoding("a -o b.jpg --quality 7").options.jpeg_quality, 7);
         assert!(refused("a -o b.jpg --bits 16").contains("8 bits"));
         assert!(refused("a --quality 7").contains("JPEG"));
+    }
+
+    #[test]
+    fn films_are_known_by_their_ending_and_are_of_all_frames() {
+        let film = plan("a -o b.gif --plays 2").unwrap();
+        let reel = film.reel.clone().unwrap();
+        assert_eq!((reel.file.as_str(), reel.plays, reel.frames_per_second), ("b.gif", 2, None));
+        let shots = film.shots(3, 24.0).unwrap();
+        assert_eq!(shots.len(), 3);
+        assert_eq!(shots[2].output, "b.gif.frames/frame_0002.png");
+        assert_eq!(film.product, Product::Picture(encoding("a -o b.png")));
+        assert!(plan("a -o b --format apng").unwrap().reel.is_some());
+        assert!(plan("a -o b.png").unwrap().reel.is_none());
     }
 
     #[test]

@@ -42,6 +42,12 @@ pub struct FrameRange {
     pub end: Option<u32>,
 }
 
+/// Frames a second.
+pub fn pace(text: &str) -> Result<f64, String> {
+    let pace = text.parse().ok().filter(|pace: &f64| *pace >= 0.01 && *pace <= 1000.0);
+    pace.ok_or_else(|| "a number from 0.01 to 1000".to_owned())
+}
+
 /// `0..30`, `10..`, `..`: frames, without the last.
 pub fn frames(text: &str) -> Result<FrameRange, String> {
     let wrong = || "a range of frames is FIRST..END without the end, such as 0..30".to_owned();

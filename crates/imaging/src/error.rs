@@ -68,6 +68,14 @@ pub enum ImageError {
         /// Pixels allowed.
         most_pixels: u64,
     },
+    /// The frames do not fit the file of moving pictures, or its encoder refused.
+    #[error("{place}: {message}")]
+    Animation {
+        /// The file.
+        place: String,
+        /// What is wrong.
+        message: String,
+    },
     /// The encoder refused: metadata that the format cannot hold, for instance.
     #[error("{place}: cannot be encoded as {format}: {message}")]
     Encode {

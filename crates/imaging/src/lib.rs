@@ -6,10 +6,12 @@
 //!
 //! - [`tone`]: from linear light to levels of 8 or 16 bits;
 //! - [`codec`]: one file per format, writer and reader;
+//! - [`animation`]: files of moving pictures;
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
 //! - [`input`]: from a file to an image;
 //! - [`mod@compare`]: how much two images differ.
 
+pub mod animation;
 pub mod atomic;
 pub mod codec;
 pub mod compare;
@@ -19,6 +21,7 @@ pub mod input;
 pub mod output;
 pub mod tone;
 
+pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_writer, create_animation};
 pub use codec::{ExrCompression, Facts, Header, Options, RowWriter, SampleDepth, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;

@@ -80,17 +80,27 @@ impl Seek for Held {
 /// A writer to a file, which takes its place when finished and not before. Devices (`/dev/null`) and named pipes
 /// are written as they are.
 pub fn create(path: &Path, format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+    format.check_dimensions(header.width, header.height)?;
+    let (destination, file) = whole_file(path)?;
+    let name = destination.name().to_owned();
+    let rows = writer(format, destination, header)?;
+    Ok(match file {
+        Some(file) => Box::new(WholeFile { rows, file, name }),
+        None => rows,
+    })
+}
+
+/// Where the bytes for a file go until it is complete; a device or a named pipe is written as it is.
+pub(crate) fn whole_file(path: &Path) -> Result<(Destination, Option<AtomicFile>), ImageError> {
     let name = path.display().to_string();
     let failed = |source| ImageError::Write { place: name.clone(), source };
     if is_passage(path) {
         let device = File::options().write(true).open(path).map_err(failed)?;
-        return writer(format, Destination::stream(name, BufWriter::new(device)), header);
+        return Ok((Destination::stream(name, BufWriter::new(device)), None));
     }
-    format.check_dimensions(header.width, header.height)?;
     let file = AtomicFile::create(path).map_err(failed)?;
     let handle = BufWriter::with_capacity(1 << 16, file.handle().map_err(failed)?);
-    let rows = writer(format, Destination::seekable(name.clone(), handle), header)?;
-    Ok(Box::new(WholeFile { rows, file, name }))
+    Ok((Destination::seekable(name, handle), Some(file)))
 }
 
 /// A writer to standard output.

@@ -4,6 +4,7 @@
 
 mod answers;
 mod errors;
+mod films;
 mod harness;
 mod memory;
 mod merging;

@@ -2,6 +2,7 @@
 
 mod film;
 mod memory;
+mod reel;
 
 use crate::args::RenderArgs;
 use crate::console;
@@ -19,6 +20,7 @@ use juggler::memory::{Effort, Memory};
 use juggler::scene::Scene;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
+use reel::Encoder;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -28,6 +30,7 @@ Examples:
   juggler render juggler                                     the built-in scene, into juggler.png
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
   juggler render juggler --frames 0..30 -o 'frame_####.png'
+  juggler render juggler -o juggler.gif                      all frames as a film
   juggler render scene.json -o - | display                   the picture to another program
   juggler render scene.json --noise 0.02                     until it is good enough
   juggler render scene.json --checkpoint scene.jfilm         the same command again goes on where it ended
@@ -78,11 +81,27 @@ impl Session {
         // Watched once there is something to clean up; until then a signal ends the program as it always does.
         let mut interrupts = None;
         let mut start = start;
-        for shot in self.plan.shots(animation.frames, animation.frames_per_second)? {
-            self.one(&scene, &shot, start, &mut interrupts)?;
+        let shots = self.plan.shots(animation.frames, animation.frames_per_second)?;
+        let began = start;
+        let encoder = self.plan.reel.as_ref();
+        let encoder = encoder.map(|reel| Encoder::start(reel, shots.len(), animation.frames_per_second));
+        let mut encoder = encoder.transpose()?;
+        for shot in &shots {
+            self.one(&scene, shot, start, &mut interrupts).map_err(|failure| match &self.plan.reel {
+                Some(reel) => failure.keeping(Some(reel.folder())),
+                None => failure,
+            })?;
+            if encoder.as_mut().is_some_and(|encoder| !encoder.take(&shot.output)) {
+                break;
+            }
             start = Instant::now();
         }
-        Ok(())
+        let Some((encoder, reel)) = encoder.zip(self.plan.reel.as_ref()) else { return Ok(()) };
+        encoder.finish()?;
+        if self.plan.quiet {
+            return Ok(());
+        }
+        self.tell(&format!("{}: {}, {}", reel.file, counted(shots.len() as u128, "frame"), duration(began.elapsed())))
     }
 
     fn one(
@@ -120,6 +139,12 @@ impl Session {
         let take = Take { shot, picture: &picture, effort, expected, load, build: built.elapsed(), start };
         let mut header = picture.header(self.plan.options());
         header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, shot)));
+        if self.plan.reel.is_some() {
+            header.metadata.push(("Tone".to_owned(), format!("{:?}", header.tone)));
+            if reel::is_made(&shot.output, &header) {
+                return Ok(());
+            }
+        }
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,
             none => none.insert(Interrupts::watch()?),
@@ -190,7 +215,7 @@ impl Session {
             let samples = counted(lost.into(), "sample");
             console::say(&format!("warning: {samples} had no finite value and counted as black"));
         }
-        if self.plan.quiet {
+        if self.plan.quiet || self.plan.reel.is_some() {
             return Ok(());
         }
         let [width, height] = picture.size();
