@@ -10,6 +10,9 @@ const MAX_LINES: usize = 400;
 /// The only files with `unsafe` in them, below `crates`.
 const UNSAFE: &[&str] = &["bvh/benches/embree/ffi.rs", "bvh/src/lanes.rs", "bvh/src/pages.rs"];
 
+/// What `cargo run` without further words runs: the README's first command.
+const PROGRAM: [&str; 2] = ["juggler-cli", "juggler"];
+
 /// Licences that the project's users can live with (SPDX; an expression needs one fit alternative).
 const LICENCES: &[&str] = &[
     "MIT",
@@ -88,6 +91,20 @@ fn every_dependency_has_a_licence_that_fits() {
         .map(|package| format!("{} {}: {}", package["name"], package["version"], package["license"]))
         .collect();
     assert!(unfit.is_empty(), "licences that are not on the list:\n{}", unfit.join("\n"));
+}
+
+#[test]
+fn cargo_run_runs_the_program() {
+    let manifests = std::fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
+    let told = manifests.filter_map(|folder| {
+        let text = std::fs::read_to_string(folder.join("Cargo.toml")).ok()?;
+        let value = |key: &str| {
+            text.lines().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix("= ").map(str::to_owned))
+        };
+        value("default-run").map(|run| [value("name").unwrap_or_default(), run].map(|word| word.replace('"', "")))
+    });
+    let told: Vec<[String; 2]> = told.collect();
+    assert_eq!(told, [PROGRAM.map(str::to_owned)], "one default-run, for `cargo run` takes no other");
 }
 
 /// Whether an SPDX expression can be met: of alternatives one, of requirements all.
