@@ -1,5 +1,6 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
+use juggler::imaging::animation::PACES;
 use juggler::tracer::film::{BLOCK, Rect};
 use std::ops::Range;
 
@@ -44,8 +45,8 @@ pub struct FrameRange {
 
 /// Frames a second.
 pub fn pace(text: &str) -> Result<f64, String> {
-    let pace = text.parse().ok().filter(|pace: &f64| *pace >= 0.01 && *pace <= 1000.0);
-    pace.ok_or_else(|| "a number from 0.01 to 1000".to_owned())
+    let pace = text.parse().ok().filter(|pace| PACES.contains(pace));
+    pace.ok_or_else(|| format!("a number from {} to {}", PACES.start(), PACES.end()))
 }
 
 /// `0..30`, `10..`, `..`: frames, without the last.

@@ -9,7 +9,11 @@ use crate::tone::Tone;
 use crate::{ImageError, atomic};
 use juggler_math::Rgb;
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::path::Path;
+
+/// Frames a second that can be written.
+pub const PACES: RangeInclusive<f64> = 0.01..=1000.0;
 
 /// A file format for moving pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,8 +128,9 @@ fn check(format: AnimationFormat, place: &str, header: &AnimationHeader) -> Resu
     if frames == 0 {
         return Err(refused(place, "there are no frames to write"));
     }
-    if !(0.01..=1000.0).contains(&frames_per_second) {
-        let message = format!("{frames_per_second} frames a second cannot be written: 0.01 to 1000 can");
+    if !PACES.contains(&frames_per_second) {
+        let message =
+            format!("{frames_per_second} frames a second cannot be written: {} to {} can", PACES.start(), PACES.end());
         return Err(refused(place, message));
     }
     Ok(())
@@ -176,6 +181,3 @@ impl FrameWriter for WholeFile {
         self.file.map_or(Ok(()), |file| file.commit().map_err(|source| ImageError::Write { place, source }))
     }
 }
-
-#[cfg(test)]
-mod tests;

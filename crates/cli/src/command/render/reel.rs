@@ -31,16 +31,10 @@ impl Encoder {
             _ => {}
         }
         let (sender, receiver) = sync_channel(WAITING);
-        let header = AnimationHeader {
-            width: 0,
-            height: 0,
-            tone: Tone::default(),
-            frames: u32::try_from(frames).unwrap_or(u32::MAX),
-            frames_per_second: reel.frames_per_second.unwrap_or(frames_per_second),
-            plays: reel.plays,
-        };
+        let frames = u32::try_from(frames).unwrap_or(u32::MAX);
+        let pace = reel.frames_per_second.unwrap_or(frames_per_second);
         let reel = reel.clone();
-        let thread = thread::Builder::new().name("film".into()).spawn(move || encode(&reel, &header, &receiver));
+        let thread = thread::Builder::new().name("film".into()).spawn(move || encode(&reel, frames, pace, &receiver));
         let thread = thread.map_err(|error| Failure::System(format!("cannot start a thread: {error}")))?;
         Ok(Self { frames: Some(sender), thread: Some(thread), folder, taken: Vec::new() })
     }
@@ -76,14 +70,16 @@ impl Drop for Encoder {
     }
 }
 
-fn encode(reel: &Reel, header: &AnimationHeader, frames: &Receiver<PathBuf>) -> Result<(), Failure> {
+fn encode(reel: &Reel, count: u32, frames_per_second: f64, frames: &Receiver<PathBuf>) -> Result<(), Failure> {
     let mut writer: Option<Box<dyn FrameWriter>> = None;
     for frame in frames {
         let image = imaging::read(&frame)?;
         let writer = match &mut writer {
             Some(writer) => writer,
             none => {
-                let header = AnimationHeader { width: image.width(), height: image.height(), ..header.clone() };
+                let (width, height, tone) = (image.width(), image.height(), Tone::default());
+                let (frames, plays) = (count, reel.plays);
+                let header = AnimationHeader { width, height, tone, frames, frames_per_second, plays };
                 none.insert(imaging::create_animation(Path::new(&reel.file), reel.format, &header)?)
             }
         };

@@ -1,29 +1,16 @@
 //! What other decoders make of the files: frames, times, colours.
 
-use super::*;
-use crate::tone::{AnyCurve, Srgb};
-use std::io::{self, Cursor, Seek, SeekFrom, Write};
-use std::sync::{Arc, Mutex};
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-/// A file in memory that can be looked at afterwards.
-#[derive(Clone, Default)]
-struct Shared(Arc<Mutex<Cursor<Vec<u8>>>>);
+#[allow(dead_code, reason = "each test file is a crate of its own and uses some of these")]
+mod common;
 
-impl Write for Shared {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.lock().unwrap().write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Seek for Shared {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.0.lock().unwrap().seek(to)
-    }
-}
+use common::Shared;
+use juggler_imaging::tone::{AnyCurve, Quantizer, Srgb};
+use juggler_imaging::{AnimationFormat, AnimationHeader, Destination, Tone, animation_writer, create_animation};
+use juggler_math::Rgb;
+use std::io::{self, Cursor};
+use std::path::Path;
 
 const SIZE: [u32; 2] = [48, 32];
 
@@ -47,13 +34,13 @@ fn write(format: AnimationFormat, header: &AnimationHeader) -> Vec<u8> {
     let mut writer = animation_writer(format, Destination::seekable("memory", file.clone()), header).unwrap();
     (0..header.frames).for_each(|number| writer.write_frame(&frame(number)).unwrap());
     writer.finish().unwrap();
-    file.0.lock().unwrap().get_ref().clone()
+    file.bytes()
 }
 
 /// The bytes of a frame as a PNG would have them.
 fn levels(number: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
-    crate::tone::Quantizer::new(&header(1, 1.0, 0).tone, 255).append_bytes(&frame(number), &mut bytes);
+    Quantizer::new(&header(1, 1.0, 0).tone, 255).append_bytes(&frame(number), &mut bytes);
     bytes
 }
 
@@ -85,10 +72,10 @@ fn apng_keeps_every_level_and_the_pace() {
 
 #[test]
 fn gif_is_close_in_colour_and_exact_in_length() {
-    for (rate, plays, repeat) in [(30.0, 0, ::gif::Repeat::Infinite), (24.0, 3, ::gif::Repeat::Finite(2))] {
+    for (rate, plays, repeat) in [(30.0, 0, gif::Repeat::Infinite), (24.0, 3, gif::Repeat::Finite(2))] {
         let file = write(AnimationFormat::Gif, &header(9, rate, plays));
-        let mut options = ::gif::DecodeOptions::new();
-        options.set_color_output(::gif::ColorOutput::RGBA);
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
         let mut reader = options.read_info(Cursor::new(&file)).unwrap();
         assert_eq!([u32::from(reader.width()), u32::from(reader.height())], SIZE);
         let (mut canvas, mut number, mut hundredths) = (vec![0; levels(0).len()], 0, 0.0);
@@ -113,13 +100,13 @@ fn few_colours_are_kept_as_they_are() {
     let colors = [0.0, 0.25, 0.5, 1.0].map(|v| Rgb::new(v, 1.0 - v, 0.3));
     writer.write_frame(&[colors, colors].concat()).unwrap();
     writer.finish().unwrap();
-    let bytes = file.0.lock().unwrap().get_ref().clone();
-    let mut options = ::gif::DecodeOptions::new();
-    options.set_color_output(::gif::ColorOutput::RGBA);
+    let bytes = file.bytes();
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
     let mut reader = options.read_info(Cursor::new(&bytes)).unwrap();
     let frame = reader.read_next_frame().unwrap().unwrap();
     let mut expected = Vec::new();
-    crate::tone::Quantizer::new(&header.tone, 255).append_bytes(&[colors, colors].concat(), &mut expected);
+    Quantizer::new(&header.tone, 255).append_bytes(&[colors, colors].concat(), &mut expected);
     let seen: Vec<u8> = frame.buffer.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     assert_eq!(seen, expected);
 }
@@ -133,7 +120,7 @@ fn frames_that_do_not_change_take_hardly_any_room() {
             let mut writer = animation_writer(format, destination, &header(frames, 25.0, 0)).unwrap();
             (0..frames).for_each(|_| writer.write_frame(&frame(0)).unwrap());
             writer.finish().unwrap();
-            file.0.lock().unwrap().get_ref().len()
+            file.bytes().len()
         });
         assert!(sizes[1] - sizes[0] < 100 * 100, "{format}: {sizes:?}");
     }
@@ -144,7 +131,7 @@ fn what_cannot_be_written_is_said_before() {
     let refuse = |format, header: &AnimationHeader| {
         let file = Shared::default();
         let refused = animation_writer(format, Destination::seekable("x.gif", file.clone()), header).err().unwrap();
-        assert!(file.0.lock().unwrap().get_ref().is_empty());
+        assert!(file.bytes().is_empty());
         refused.to_string()
     };
     let gif = AnimationFormat::Gif;
