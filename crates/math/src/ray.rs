@@ -17,7 +17,7 @@ pub struct Ray {
     pub t_min: f32,
     /// Largest distance that counts; infinite for a ray without end.
     pub t_max: f32,
-    /// When, in seconds from the frame's shutter opening.
+    /// When: 0 as the shutter opens, 1 as it closes.
     pub time: f32,
 }
 

@@ -41,6 +41,11 @@ impl Transform {
         Self::new(Mat3::from_cols(turn(Vec3::X), turn(Vec3::Y), turn(Vec3::Z)), Vec3::ZERO)
     }
 
+    /// The same linear part with the local origin at `translation`.
+    pub fn moved_to(&self, translation: Vec3) -> Self {
+        Self { translation, ..*self }
+    }
+
     /// First `self`, then `next`.
     pub fn then(&self, next: &Self) -> Self {
         Self {

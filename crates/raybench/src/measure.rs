@@ -9,10 +9,11 @@ use std::fmt;
 use std::iter::Sum;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Rays that a thread takes at a time.
-const CHUNK: usize = 4096;
-/// Fewer rays than this are traced again and again, so that what is timed is neither short nor a single chunk.
-const LEAST: usize = 1 << 16;
+/// Rays that a thread takes at a time: few, so that threads end together.
+const CHUNK: usize = 512;
+/// Seconds of work for each thread that are timed at least; rays are traced again and again until then. Of a few
+/// milliseconds the start of threads would be a part.
+const LEAST: f64 = 0.05;
 
 /// What rays came to, to see whether tracers agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,7 +63,7 @@ impl fmt::Display for Sums {
     }
 }
 
-/// What is measured: traces a few thousand rays. The call costs nothing that shows.
+/// What is measured: traces a few hundred rays. The call costs nothing that shows.
 pub type Trace<'a> = &'a (dyn Fn(&[Ray], &mut Scratch) -> Sums + Sync);
 
 /// Measurements of one tracer, in the order of the repeats.
@@ -106,25 +107,28 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     (at(sorted.len() / 2) + at(sorted.len().saturating_sub(1) / 2)) / 2.0
 }
 
-/// Times every tracer on the same rays, `repeats` times after one that does not count.
+/// Times every tracer on the same rays, `repeats` times after one that does not count but says how often the rays
+/// must be traced to give the fastest enough to do.
 pub fn in_turns(rays: &[Ray], tracers: &[Trace], threads: usize, repeats: usize) -> Vec<Timing> {
-    let warm_up = |trace: &Trace| Timing { rays: rays.len(), repeats: Vec::new(), sums: run(rays, *trace, threads).1 };
-    let mut timings: Vec<Timing> = tracers.iter().map(warm_up).collect();
+    let first: Vec<(Elapsed, Sums)> = tracers.iter().map(|trace| run(rays, *trace, threads, 1)).collect();
+    let fastest = first.iter().map(|(time, _)| time.cpu).fold(f64::INFINITY, f64::min);
+    let passes = (LEAST * threads as f64 / fastest.max(1e-5)).ceil().max(1.0) as usize;
+    let timing = |(_, sums)| Timing { rays: rays.len(), repeats: Vec::new(), sums };
+    let mut timings: Vec<Timing> = first.into_iter().map(timing).collect();
     for repeat in 0..repeats {
         for turn in 0..tracers.len() {
             let which = (repeat + turn) % tracers.len();
             if let (Some(trace), Some(timing)) = (tracers.get(which), timings.get_mut(which)) {
-                timing.repeats.push(run(rays, *trace, threads).0);
+                timing.repeats.push(run(rays, *trace, threads, passes).0);
             }
         }
     }
     timings
 }
 
-/// Traces all rays, few ones many times; threads take the next few thousand when they have done theirs. Time and sums
-/// are those of one pass.
-fn run(rays: &[Ray], trace: Trace, threads: usize) -> (Elapsed, Sums) {
-    let passes = (LEAST / rays.len().max(1)).max(1);
+/// Traces all rays `passes` times; threads take the next few hundred when they have done theirs. Time and sums are
+/// those of one pass.
+fn run(rays: &[Ray], trace: Trace, threads: usize, passes: usize) -> (Elapsed, Sums) {
     let (next, chunks) = (AtomicUsize::new(0), rays.len().div_ceil(CHUNK));
     let work = || {
         let (watch, mut scratch, mut sums) = (Stopwatch::start(Of::Thread), Scratch::default(), Sums::default());
