@@ -17,6 +17,7 @@ mod orthographic;
 mod perspective;
 mod pose;
 mod projection;
+mod shot;
 mod thin_lens;
 
 #[cfg(test)]
@@ -25,6 +26,7 @@ mod contract;
 pub use field_of_view::{Screen, ViewPlane};
 pub use pose::{Axes, Move};
 pub use projection::{LANES, Projection};
+pub use shot::Shot;
 
 /// Why a camera cannot be: the field at fault and what it should be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -64,6 +64,38 @@ impl Projection {
         Self { right: self.right * scale.x, down: self.down * scale.y, ..*self }
     }
 
+    /// A share of the way to another projection, everything going straight. Where the lenses are of different kinds,
+    /// that of the nearer one counts.
+    pub(super) fn towards(&self, other: &Self, share: f32) -> Self {
+        let between = |from: Vec3, to: Vec3| juggler_math::motion::between(from, to, share);
+        let lens = match (self.lens, other.lens) {
+            (Lens::Disk { right, up, focus }, Lens::Disk { right: to_right, up: to_up, focus: to_focus }) => {
+                Lens::Disk {
+                    right: between(right, to_right),
+                    up: between(up, to_up),
+                    focus: focus * (1.0 - share) + to_focus * share,
+                }
+            }
+            (Lens::Parallel { forward }, Lens::Parallel { forward: to }) => {
+                Lens::Parallel { forward: between(forward, to).try_normalize().unwrap_or(forward) }
+            }
+            (from, to) => {
+                if share < 0.5 {
+                    from
+                } else {
+                    to
+                }
+            }
+        };
+        Self {
+            origin: between(self.origin, other.origin),
+            corner: between(self.corner, other.corner),
+            right: between(self.right, other.right),
+            down: between(self.down, other.down),
+            lens,
+        }
+    }
+
     /// Whether the place on the lens makes a difference.
     #[inline]
     pub fn needs_lens(&self) -> bool {

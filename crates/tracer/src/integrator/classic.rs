@@ -154,14 +154,15 @@ impl Bundle<'_> {
 
 /// What one light brings, from one or more places on it.
 fn light(lamp: &Lamp, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
-    if !seen.phong.both_sides && lamp.is_below(seen.surface.point, seen.normal) {
+    let source = lamp.at(seen.time);
+    if !seen.phong.both_sides && source.is_below(seen.surface.point, seen.normal) {
         return;
     }
-    let Lamp { light, samples, is_point, .. } = lamp;
+    let Lamp { samples, is_point, .. } = lamp;
     let share = 1.0 / *samples as f32;
     for i in 0..*samples {
         let u = if *is_point { Vec2::ZERO } else { sampler.part(i, *samples).next_2d() };
-        let Some(sample) = light.sample(seen.surface.point, u) else { continue };
+        let Some(sample) = source.light.sample(seen.surface.point, u) else { continue };
         let reflected = local(seen, sample.wi);
         if reflected.is_black() {
             continue;

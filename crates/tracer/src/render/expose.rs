@@ -1,4 +1,4 @@
-//! The camera's rays: samples of the film's pixels, eight side by side.
+//! The camera's rays: samples of the film's pixels, eight side by side, each at its time.
 
 use super::{Job, Work};
 use crate::camera::LANES;
@@ -12,6 +12,8 @@ const PLACES: usize = 64;
 /// Dimensions of a sample that the camera takes: the place on the film, the place on the lens.
 const FILM: u32 = 1;
 const LENS: u32 = 1;
+/// The dimension of a sample's time, beyond all that paths come to: still pictures do without it.
+const TIME: u32 = 1 << 31;
 
 /// The rays of the samples `slots` of all samples of `work`, `samples` a pixel, pixel by pixel.
 pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
@@ -49,7 +51,7 @@ fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) 
         });
         let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
         let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
-        job.camera.rays(&films, &lenses, count, &mut queue.rays);
+        job.camera.rays(&films, &lenses, &[0.5; LANES], count, &mut queue.rays);
         let slot = (start - range.start) as u32;
         let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
         queue.paths.extend((0..).zip(&pixels).take(count).map(path));
@@ -61,6 +63,8 @@ struct Pixel<'j> {
     job: &'j Job<'j>,
     center: Vec2,
     stream: Sampler,
+    /// Whether time makes a difference.
+    moves: bool,
 }
 
 impl<'j> Pixel<'j> {
@@ -73,7 +77,8 @@ impl<'j> Pixel<'j> {
     /// The pixel at this place in the work's rectangle.
     fn new(job: &'j Job, work: &Work, picture: &Sampler, place: UVec2) -> Self {
         let pixel = UVec2::new(work.pixels.x, work.pixels.y).wrapping_add(place);
-        Self { job, center: pixel.as_vec2() + 0.5, stream: picture.pixel(pixel) }
+        let moves = job.camera.moves() || job.world.moves();
+        Self { job, center: pixel.as_vec2() + 0.5, stream: picture.pixel(pixel), moves }
     }
 
     /// The numbers of a sample from `dimension` on.
@@ -86,6 +91,11 @@ impl<'j> Pixel<'j> {
     /// Where on the lens a sample begins.
     fn lens(&self, sample: u32) -> Vec2 {
         if self.job.camera.needs_lens() { self.sampler(sample, FILM).next_2d() } else { Vec2::splat(0.5) }
+    }
+
+    /// When a sample is taken, from 0 to 1: a pixel's samples are spread evenly over the time, whatever their places.
+    fn time(&self, sample: u32) -> f32 {
+        if self.moves { self.sampler(sample, TIME).next_1d() } else { 0.0 }
     }
 
     fn path(&self, sample: u32, slot: u32, weight: f32) -> Path {
@@ -116,7 +126,8 @@ impl<'j> Pixel<'j> {
             weights[i] = sample.weight;
         }
         let lenses = std::array::from_fn(|i| self.lens(first + i as u32));
-        camera.rays(&films, &lenses, places.len(), &mut queue.rays);
+        let times = std::array::from_fn(|i| self.time(first + i as u32));
+        camera.rays(&films, &lenses, &times, places.len(), &mut queue.rays);
         let path = |(i, weight): (u32, &f32)| self.path(first + i, slot + i, *weight);
         queue.paths.extend((0..).zip(&weights).take(places.len()).map(path));
     }

@@ -3,7 +3,7 @@
 //! [`Job::render`] is the pure function that everything else schedules: a rectangle of pixels and a range
 //! of samples give a [`Tile`], on any thread or machine.
 
-use crate::camera::Projection;
+use crate::camera::Shot;
 use crate::film::{Filter, Rect, Sum, Tile};
 use crate::integrator::Integrator;
 use crate::sampler::Pattern;
@@ -17,6 +17,8 @@ mod rounds;
 mod schedule;
 mod wavefront;
 
+#[cfg(test)]
+mod blur;
 #[cfg(test)]
 mod tests;
 
@@ -49,14 +51,15 @@ pub struct Job<'w> {
     /// What can be seen.
     pub world: &'w World,
     /// From where.
-    pub camera: &'w Projection,
+    pub camera: &'w Shot,
     /// How light travels.
     pub integrator: &'w dyn Integrator,
     /// How samples become pixels.
     pub filter: Filter,
     /// How samples are spread.
     pub pattern: Pattern,
-    /// Samples of each pixel of the finished picture. A single one goes through the pixel's centre.
+    /// Samples of each pixel of the finished picture. A single one goes through the pixel's centre, half way between
+    /// opening and closing of the shutter.
     pub samples: u32,
     /// Another seed, another noise.
     pub seed: u64,

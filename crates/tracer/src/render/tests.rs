@@ -12,45 +12,54 @@ use crate::sampler::{Pattern, Sobol, Spread};
 use crate::shape::AnyShape;
 use crate::texture::TextureTable;
 use crate::world::{Object, Vertex};
-use juggler_math::{Ray, Rgb, Transform, UVec2, Vec3};
+use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
-fn read<T: DeserializeOwned>(json: &str) -> T {
+pub fn read<T: DeserializeOwned>(json: &str) -> T {
     serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))
 }
 
 /// A world of objects written as (shape, place, material).
-fn world(objects: &[(&str, Vec3, &str)], lights: &[&str], background: Rgb) -> World {
+pub fn world(objects: &[(&str, Vec3, &str)], lights: &[&str], background: Rgb) -> World {
+    let objects: Vec<(&str, Motion, &str)> = objects
+        .iter()
+        .map(|(shape, place, material)| (*shape, Transform::translation(*place).into(), *material))
+        .collect();
+    world_in_motion(&objects, lights, background)
+}
+
+/// A world of objects written as (shape, motion, material).
+pub fn world_in_motion(objects: &[(&str, Motion, &str)], lights: &[&str], background: Rgb) -> World {
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
     let objects = objects
         .iter()
-        .map(|(shape, place, material)| {
+        .map(|(shape, motion, material)| {
             let mut shape: AnyShape = read(shape);
             shape.prepare().unwrap();
             let material: AnyMaterial = read(material);
             let material = compiler.compile(&material).unwrap();
-            Object::new(shape, Transform::translation(*place), material)
+            Object::new(shape, motion.clone(), material)
         })
         .collect();
-    let lights = lights.iter().map(|light| read::<AnyLight>(light)).collect();
+    let lights = lights.iter().map(|light| read::<AnyLight>(light));
     World::new(objects, compiler.finish().unwrap(), lights, AnyBackground::Solid(Solid { color: background }))
 }
 
-pub fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> Projection {
+pub fn look(eye: Vec3, look_at: Vec3, fov: &str, size: UVec2) -> Shot {
     let camera: Perspective = read(&format!(
         r#"{{"eye": [{}, {}, {}], "look_at": [{}, {}, {}], "vertical_fov_degrees": {fov}}}"#,
         eye.x, eye.y, eye.z, look_at.x, look_at.y, look_at.z
     ));
-    AnyCamera::from(camera).project(size).unwrap()
+    AnyCamera::from(camera).project(size).unwrap().into()
 }
 
-fn pixels(world: &World, camera: &Projection, integrator: &AnyIntegrator, size: UVec2, samples: u32) -> Vec<Rgb> {
+pub fn pixels(world: &World, camera: &Shot, integrator: &AnyIntegrator, size: UVec2, samples: u32) -> Vec<Rgb> {
     let job = job(world, camera, integrator, samples);
     let pixels = Rect { x: 0, y: 0, width: size.x, height: size.y };
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }
 
-pub fn job<'w>(world: &'w World, camera: &'w Projection, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
+pub fn job<'w>(world: &'w World, camera: &'w Shot, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
     let (pattern, filter) = (Sobol {}.pattern(samples), BoxFilter {}.filter(samples));
     assert_eq!(pattern, Pattern::Sobol);
     Job { world, camera, integrator: &**integrator, filter, pattern, samples, seed: 1 }

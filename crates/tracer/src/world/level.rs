@@ -35,6 +35,7 @@ pub struct Level {
     /// Places of the objects without an end.
     pub(super) unbounded: Vec<u32>,
     bounds: Aabb,
+    moves: bool,
     totals: Totals,
 }
 
@@ -98,8 +99,9 @@ impl Level {
         let items = order.map(|place| Item::new(&objects[place as usize], place, number(place))).collect();
         let large = large.iter().map(|place| Large::new(&objects[*place as usize], *place, number(*place))).collect();
         let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
+        let moves = objects.iter().any(Object::moves);
         let objects = objects.into_iter().map(Placed::new).collect();
-        Self { objects, firsts, items, bvh, large, unbounded, bounds, totals }
+        Self { objects, firsts, items, bvh, large, unbounded, bounds, moves, totals }
     }
 
     /// The same level and all below it for another vector unit than the best of this machine.
@@ -119,9 +121,14 @@ impl Level {
         level
     }
 
-    /// A box around everything in it that has an end; empty when nothing has.
+    /// A box around everything in it that has an end, wherever it comes; empty when nothing has.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// Whether anything in it moves while the shutter is open.
+    pub fn moves(&self) -> bool {
+        self.moves
     }
 
     /// Whether everything in it has an end.
@@ -168,7 +175,9 @@ impl Level {
                 let surface = placed.surface(shape, ray, &hit.hit, !materials.is_textured(material));
                 Vertex { surface, material, object: hit.object }
             }
-            Content::Level(level) => level.instanced(&placed.transform, ray, hit, number, material, materials),
+            Content::Level(level) => {
+                level.instanced(&placed.motion.at(ray.time), ray, hit, number, material, materials)
+            }
         }
     }
 
@@ -194,7 +203,7 @@ impl Level {
             Content::Shape(shape) => shape.bounds(),
             Content::Level(level) => level.shape_bounds(number),
         };
-        let bounds = placed.transform.aabb(&bounds);
+        let bounds = placed.motion.aabb(&bounds);
         if bounds.is_finite() { bounds } else { Aabb::EMPTY }
     }
 

@@ -2,20 +2,22 @@
 
 use crate::background::AnyBackground;
 use crate::bsdf::Phong;
-use crate::light::AnyLight;
 use crate::material::{MaterialId, MaterialTable};
 use crate::shape::Hit;
 use crate::surface::Surface;
-use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
+use juggler_math::{Aabb, Ray, Rgb, Vec2};
 use std::borrow::Cow;
 
 mod geometry;
 mod items;
+mod lamp;
 mod large;
 mod level;
 mod object;
 mod trace;
 
+#[cfg(test)]
+mod moving;
 #[cfg(test)]
 mod precision;
 #[cfg(test)]
@@ -23,6 +25,7 @@ mod tests;
 
 pub use geometry::Geometry;
 pub use juggler_bvh::{SimdLevel, simd_levels};
+pub use lamp::{Lamp, Source};
 pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
 pub use object::{Content, Object};
 
@@ -66,19 +69,6 @@ pub struct Vertex {
     pub object: u32,
 }
 
-/// A light that shines from somewhere, with what is asked at every vertex.
-#[derive(Clone, Debug)]
-pub struct Lamp {
-    /// The light.
-    pub light: AnyLight,
-    /// [`Light::shadow_samples`](crate::light::Light::shadow_samples), at least 1.
-    pub samples: u32,
-    /// [`Light::is_point`](crate::light::Light::is_point).
-    pub is_point: bool,
-    /// [`Light::ball`](crate::light::Light::ball).
-    ball: Option<(Vec3, f32)>,
-}
-
 /// Everything that can be seen.
 #[derive(Clone)]
 pub struct World {
@@ -88,19 +78,7 @@ pub struct World {
     ambient: Rgb,
     background: AnyBackground,
     has_transparency: bool,
-}
-
-impl Lamp {
-    fn new(light: AnyLight) -> Self {
-        let (samples, is_point, ball) = (light.shadow_samples().max(1), light.is_point(), light.ball());
-        Self { light, samples, is_point, ball }
-    }
-
-    /// Whether all of it lies below the plane through `point`: it cannot light what faces along `normal` there.
-    #[inline]
-    pub fn is_below(&self, point: Vec3, normal: Vec3) -> bool {
-        self.ball.is_some_and(|(centre, radius)| (centre - point).dot(normal) < -radius)
-    }
+    moves: bool,
 }
 
 impl World {
@@ -108,15 +86,17 @@ impl World {
     pub fn new(
         objects: Vec<Object>,
         materials: MaterialTable,
-        lights: Vec<AnyLight>,
+        lights: impl IntoIterator<Item = impl Into<Lamp>>,
         background: AnyBackground,
     ) -> Self {
         let top = Level::top(objects);
         let objects = geometry::levels(&top).into_iter().flat_map(|level| &level.objects);
         let has_transparency = objects.filter_map(|placed| placed.material).any(|id| materials.is_transparent(id));
-        let ambient = lights.iter().fold(Rgb::BLACK, |sum, light| sum + light.ambient());
-        let lamps = lights.into_iter().filter(|light| light.ambient().is_black()).map(Lamp::new).collect();
-        Self { top, materials, lamps, ambient, background, has_transparency }
+        let mut lamps: Vec<Lamp> = lights.into_iter().map(Into::into).collect();
+        let ambient = lamps.iter().fold(Rgb::BLACK, |sum, lamp| sum + lamp.ambient);
+        lamps.retain(|lamp| lamp.ambient.is_black());
+        let moves = top.moves() || lamps.iter().any(Lamp::moves);
+        Self { top, materials, lamps, ambient, background, has_transparency, moves }
     }
 
     /// The same world for another vector unit than the best of this machine: for tests and measurements.
@@ -140,7 +120,12 @@ impl World {
         self.background.radiance(ray)
     }
 
-    /// A box around all bounded objects; empty when there are none.
+    /// Whether anything moves while the shutter is open, so that the time of a ray makes a difference.
+    pub fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// A box around all bounded objects, wherever they come; empty when there are none.
     pub fn bounds(&self) -> Aabb {
         self.top.bounds()
     }

@@ -3,7 +3,7 @@
 use super::Level;
 use crate::material::MaterialId;
 use crate::shape::AnyShape;
-use juggler_math::{Aabb, Transform};
+use juggler_math::{Aabb, Motion};
 use std::sync::Arc;
 
 /// A shape or a shared level in its place.
@@ -12,7 +12,7 @@ pub struct Object {
     /// What it is.
     pub content: Content,
     /// Its own space → that of the level that holds it.
-    pub transform: Transform,
+    pub motion: Motion,
     /// What it is made of; `None`: whatever the instance is made of that holds it, black where nothing says.
     pub material: Option<MaterialId>,
 }
@@ -38,8 +38,8 @@ impl Content {
 
 impl Object {
     /// A prepared shape.
-    pub fn new(shape: AnyShape, transform: Transform, material: MaterialId) -> Self {
-        Self { content: Content::Shape(Arc::new(shape)), transform, material: Some(material) }
+    pub fn new(shape: AnyShape, motion: impl Into<Motion>, material: MaterialId) -> Self {
+        Self { content: Content::Shape(Arc::new(shape)), motion: motion.into(), material: Some(material) }
     }
 
     /// Whether it has an end.
@@ -50,13 +50,23 @@ impl Object {
         }
     }
 
-    /// A box around all of it that has an end, in the space of the level that holds it; empty when nothing has.
+    /// A box around all of it that has an end, wherever it comes, in the space of the level that holds it; empty when
+    /// nothing has.
     pub fn bounds(&self) -> Aabb {
         let bounds = match &self.content {
-            Content::Shape(shape) => self.transform.aabb(&shape.bounds()),
-            Content::Level(level) => self.transform.aabb(&level.bounds()),
+            Content::Shape(shape) => self.motion.aabb(&shape.bounds()),
+            Content::Level(level) => self.motion.aabb(&level.bounds()),
         };
         if bounds.is_finite() { bounds } else { Aabb::EMPTY }
+    }
+
+    /// Whether it, or anything in it, moves while the shutter is open.
+    pub fn moves(&self) -> bool {
+        self.motion.moves()
+            || match &self.content {
+                Content::Shape(_) => false,
+                Content::Level(level) => level.moves(),
+            }
     }
 
     /// How many shapes it stands for.

@@ -6,7 +6,7 @@ use super::*;
 use crate::shape::contract::{ball, distance, is_convex, is_flat, is_solid};
 use crate::shape::{AnyShape, Cuboid, Mesh, MeshData, Plane, Sphere};
 use juggler_math::testing::Random;
-use juggler_math::{DVec3, Frame, Transform, fun, robust};
+use juggler_math::{DVec3, Frame, Transform, Vec3, fun, robust};
 
 /// One object at its place.
 struct Subject {

@@ -6,12 +6,14 @@ use crate::background::Solid;
 use crate::material::{Checkerboard, MaterialCompiler, MaterialRef, Resolver};
 use crate::shape::{AnyShape, Mesh, MeshData, Plane, Sphere};
 use crate::texture::TextureTable;
-use juggler_math::Transform;
 use juggler_math::testing::Random;
+use juggler_math::{Motion, Transform, Vec3};
 use std::sync::Arc;
 
+const NO_LIGHTS: [Lamp; 0] = [];
+
 /// Every kind of shape, each `times`, turned, sheared and moved.
-fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec<Object> {
+pub fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec<Object> {
     let mut objects = Vec::new();
     for _ in 0..times {
         for mut shape in AnyShape::examples() {
@@ -22,18 +24,18 @@ fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec
             }
             let place = Transform::translation(random.point(20.0));
             let transform = random.transform().then(&place);
-            objects.push(Object { content: Content::Shape(Arc::new(shape)), transform, material });
+            objects.push(Object { content: Content::Shape(Arc::new(shape)), motion: transform.into(), material });
         }
     }
     objects
 }
 
 /// A world of objects whose materials are 0, 1 and 2.
-fn world_of(objects: Vec<Object>) -> World {
+pub fn world_of(objects: Vec<Object>) -> World {
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
     let materials = [0, 1, 2].map(|_| compiler.material("material", &MaterialRef::default()).unwrap());
     assert_eq!(materials, [0, 1, 2].map(MaterialId));
-    World::new(objects, compiler.finish().unwrap(), Vec::new(), AnyBackground::Solid(Solid::default()))
+    World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
 }
 
 /// Three levels: a crowd with a ground below it, several of them mirrored, sheared and turned, several of those.
@@ -45,7 +47,7 @@ fn nested(random: &mut Random) -> World {
             let transform = if i.is_multiple_of(2) { mirror.then(&place) } else { place };
             Object {
                 content: Content::Level(Arc::clone(level)),
-                transform,
+                motion: transform.into(),
                 material: material.filter(|_| i.is_multiple_of(3)),
             }
         };
@@ -69,7 +71,7 @@ fn nested(random: &mut Random) -> World {
 
 /// Instances of instances that have an end, so that they stand in the hierarchy, among other objects; without the shapes
 /// of a crowd that have none.
-fn grove(random: &mut Random) -> World {
+pub fn grove(random: &mut Random) -> World {
     let bounded = |mut objects: Vec<Object>| {
         objects.retain(Object::is_bounded);
         objects
@@ -82,22 +84,22 @@ fn grove(random: &mut Random) -> World {
             let material = Some(MaterialId(material));
             objects.insert(
                 objects.len() / 2,
-                Object { content: Content::Level(Arc::clone(&content)), transform, material },
+                Object { content: Content::Level(Arc::clone(&content)), motion: transform.into(), material },
             );
         }
         content = Arc::new(Level::new(objects));
     }
-    world_of(vec![Object { content: Content::Level(content), transform: random.transform(), material: None }])
+    world_of(vec![Object { content: Content::Level(content), motion: random.transform().into(), material: None }])
 }
 
-/// The same shapes without any level: transforms joined, materials inherited.
-fn expanded(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>) -> Vec<Object> {
+/// The same shapes without any level, as they stand at a time: transforms joined, materials inherited.
+pub fn expanded_at(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>, time: f32) -> Vec<Object> {
     let expand = |placed: &Placed| {
-        let Placed { content, transform, material, .. } = placed;
-        let (transform, material) = (transform.then(parent), material.or(inherited));
+        let Placed { content, motion, material, .. } = placed;
+        let (place, material) = (motion.at(time).then(parent), material.or(inherited));
         match content {
-            Content::Shape(_) => vec![Object { content: content.clone(), transform, material }],
-            Content::Level(level) => expanded(&level.objects, &transform, material),
+            Content::Shape(_) => vec![Object { content: content.clone(), motion: place.into(), material }],
+            Content::Level(level) => expanded_at(&level.objects, &place, material, time),
         }
     };
     objects.iter().flat_map(expand).collect()
@@ -116,7 +118,7 @@ fn brute_force(objects: &[Placed], ray: &Ray, next: &mut u32, best: &mut WorldHi
                 *next += 1;
             }
             Content::Level(level) => {
-                brute_force(&level.objects, &placed.transform.ray_to_local(ray), next, best);
+                brute_force(&level.objects, &placed.local(ray), next, best);
             }
         }
     }
@@ -130,17 +132,18 @@ fn nearest(world: &World, ray: &Ray) -> WorldHit {
 }
 
 /// So many rays from one place, close together or in all directions, some with an end.
-fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
+pub fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
     let origin = random.point(40.0);
     let axis = random.unit_vector();
     let spread = if round.is_multiple_of(2) { 0.02 } else { 2.0 };
     (0..count)
         .map(|_| Ray::new(origin, (axis + random.unit_vector() * spread).normalize_or(axis)))
+        .map(|ray| Ray { time: (ray.direction.x * 1e3).abs().fract(), ..ray })
         .map(|ray| if round.is_multiple_of(3) { ray.up_to(30.0) } else { ray })
         .collect()
 }
 
-fn equals_brute_force(world: &World, rounds: usize) {
+pub fn equals_brute_force(world: &World, rounds: usize) {
     let mut random = Random::new(17);
     let mut met = 0;
     for round in 0..rounds {
@@ -191,7 +194,7 @@ fn of_coincident_instances_the_lower_number_is_hit() {
     let mut objects = crowd(&mut random, 2, Some(MaterialId(0)));
     objects.retain(Object::is_bounded);
     let level = Arc::new(Level::new(objects));
-    let instance = Object { content: Content::Level(level), transform: random.rotation(), material: None };
+    let instance = Object { content: Content::Level(level), motion: random.rotation().into(), material: None };
     let mut objects = crowd(&mut random, 1, Some(MaterialId(1)));
     objects.extend(objects.clone());
     for place in [0, objects.len() / 2, objects.len()] {
@@ -208,7 +211,7 @@ fn of_coincident_instances_the_lower_number_is_hit() {
 }
 
 /// A wavy square of 1,152 triangles.
-fn large_mesh() -> AnyShape {
+pub fn large_mesh() -> AnyShape {
     const SIDE: u32 = 24;
     let corner = |i: u32| Vec2::new((i % (SIDE + 1)) as f32, (i / (SIDE + 1)) as f32) / SIDE as f32 - 0.5;
     let position = |at: Vec2| Vec3::new(20.0 * at.x, 60.0 * at.x * at.y, 20.0 * at.y);
@@ -245,7 +248,7 @@ fn large_meshes_equal_brute_force() {
 fn instances_are_what_expanding_them_gives() {
     let mut random = Random::new(20);
     let world = nested(&mut random);
-    let flat = world_of(expanded(&world.top.objects, &Transform::IDENTITY, None));
+    let flat = world_of(expanded_at(&world.top.objects, &Transform::IDENTITY, None, 0.0));
     assert_eq!(
         (flat.geometry().shapes, flat.geometry().triangles),
         (world.geometry().shapes, world.geometry().triangles)
@@ -305,11 +308,11 @@ fn what_is_shared_is_stored_once() {
     let mut step = 1.0;
     for _ in 0..3 {
         let place = |i: u16| Transform::translation(Vec3::new(f32::from(i % 32), 0.0, f32::from(i / 32)) * step);
-        let object = |i| Object { content: content.clone(), transform: place(i), material: None };
+        let object = |i| Object { content: content.clone(), motion: place(i).into(), material: None };
         content = Content::Level(Arc::new(Level::new((0..1024).map(object).collect())));
         step *= 32.0;
     }
-    let world = world_of(vec![Object { content, transform: Transform::IDENTITY, material: Some(MaterialId(0)) }]);
+    let world = world_of(vec![Object { content, motion: Transform::IDENTITY.into(), material: Some(MaterialId(0)) }]);
     let geometry = world.geometry();
     assert_eq!((geometry.shapes, geometry.instances), (1 << 30, 1 + 1024 + (1 << 20)));
     assert!(geometry.geometry_bytes + geometry.bvh_bytes < 1 << 21, "{geometry:?}");
@@ -329,7 +332,7 @@ fn what_is_shared_is_stored_once() {
 #[test]
 fn an_empty_world_is_empty() {
     let world =
-        World::new(Vec::new(), MaterialTable::default(), Vec::new(), AnyBackground::Solid(Solid { color: Rgb::WHITE }));
+        World::new(Vec::new(), MaterialTable::default(), NO_LIGHTS, AnyBackground::Solid(Solid { color: Rgb::WHITE }));
     let mut ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert!(!world.closest(&mut ray).is_some());
     assert_eq!(world.background(&ray), Rgb::WHITE);
@@ -342,5 +345,5 @@ pub fn world_with(shape: AnyShape, transform: Transform, textured: bool) -> Worl
     let recipe = if textured { MaterialRef::from(Checkerboard::default()) } else { MaterialRef::default() };
     let material = compiler.material("material", &recipe).unwrap();
     let objects = vec![Object::new(shape, transform, material)];
-    World::new(objects, compiler.finish().unwrap(), Vec::new(), AnyBackground::Solid(Solid::default()))
+    World::new(objects, compiler.finish().unwrap(), NO_LIGHTS, AnyBackground::Solid(Solid::default()))
 }

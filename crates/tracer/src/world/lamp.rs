@@ -1,0 +1,80 @@
+//! A light that shines from somewhere, with what is asked of it at every vertex.
+
+use crate::light::AnyLight;
+use juggler_math::{Rgb, Vec3};
+
+/// A light, still or moving.
+#[derive(Clone, Debug)]
+pub struct Lamp {
+    /// [`Light::shadow_samples`](crate::light::Light::shadow_samples), at least 1.
+    pub samples: u32,
+    /// [`Light::is_point`](crate::light::Light::is_point).
+    pub is_point: bool,
+    /// Light from everywhere, in the mean of its time.
+    pub(super) ambient: Rgb,
+    /// In the first of as many parts of the time that the shutter is open as there are sources.
+    first: Source,
+    /// In the other parts.
+    others: Box<[Source]>,
+}
+
+/// A light as it is for a while.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The light.
+    pub light: AnyLight,
+    /// [`Light::ball`](crate::light::Light::ball).
+    ball: Option<(Vec3, f32)>,
+}
+
+impl From<AnyLight> for Lamp {
+    fn from(light: AnyLight) -> Self {
+        Self::moving(light, Vec::new())
+    }
+}
+
+impl Lamp {
+    /// A light that is as `first` and the `others` say, each for the same part of the time that the shutter is open.
+    pub fn moving(first: AnyLight, others: Vec<AnyLight>) -> Self {
+        let all = || std::iter::once(&first).chain(&others);
+        let count = (others.len() + 1) as f32;
+        Self {
+            samples: all().map(|light| light.shadow_samples()).fold(1, u32::max),
+            is_point: all().all(|light| light.is_point()),
+            ambient: all().fold(Rgb::BLACK, |sum, light| sum + light.ambient()) / count,
+            first: Source::new(first.clone()),
+            others: others.iter().cloned().map(Source::new).collect(),
+        }
+    }
+
+    /// Whether it is not always the same.
+    pub fn moves(&self) -> bool {
+        !self.others.is_empty()
+    }
+
+    /// What it is at a time between 0 and 1.
+    #[inline]
+    pub fn at(&self, time: f32) -> &Source {
+        if self.others.is_empty() {
+            return &self.first;
+        }
+        let part = (time * (self.others.len() + 1) as f32) as usize;
+        match part.min(self.others.len()).checked_sub(1) {
+            Some(other) => &self.others[other],
+            None => &self.first,
+        }
+    }
+}
+
+impl Source {
+    fn new(light: AnyLight) -> Self {
+        let ball = light.ball();
+        Self { light, ball }
+    }
+
+    /// Whether all of it lies below the plane through `point`: it cannot light what faces along `normal` there.
+    #[inline]
+    pub fn is_below(&self, point: Vec3, normal: Vec3) -> bool {
+        self.ball.is_some_and(|(centre, radius)| (centre - point).dot(normal) < -radius)
+    }
+}
