@@ -109,6 +109,11 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SECONDS", value_parser = value::seconds, help_heading = "Picture")]
     pub at: Option<f64>,
 
+    /// When the shutter opens and closes, in frames from the frame's own time, such as 0..0.5: what moves meanwhile is
+    /// blurred [default: the scene's]
+    #[arg(long, value_name = "A..B", value_parser = value::shutter, allow_hyphen_values = true, help_heading = "Picture")]
+    pub shutter: Option<[f64; 2]>,
+
     /// A part of the picture
     #[arg(long, value_name = "X,Y,W,H", value_parser = value::crop, help_heading = "Picture")]
     pub crop: Option<Rect>,

@@ -197,6 +197,7 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         sampler: None,
         max_depth: args.max_depth,
         camera: args.camera.clone(),
+        shutter: args.shutter,
         seed: args.seed,
         crop: if product == Product::Part { None } else { args.crop },
         curve: args.tone.clone(),

@@ -15,8 +15,20 @@ pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 /// The shortest command line that renders this picture again.
 pub fn command(plan: &Plan, shot: &Shot) -> String {
     // No flag sets a sampler.
-    let Settings { size, samples, limit, integrator, sampler: _, max_depth, camera, seed, crop, curve, exposure_stops } =
-        &plan.settings;
+    let Settings {
+        size,
+        samples,
+        limit,
+        integrator,
+        sampler: _,
+        max_depth,
+        camera,
+        shutter,
+        seed,
+        crop,
+        curve,
+        exposure_stops,
+    } = &plan.settings;
     let Options { png_16_bit, jpeg_quality, exr_depth, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
     words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
@@ -32,6 +44,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         Moments::At(seconds) => words.flag("--at", Some(seconds)),
         Moments::Frame(_) | Moments::Frames(_) => words.flag("--frame", Some(shot.frame).filter(|frame| *frame != 0.0)),
     }
+    words.flag("--shutter", shutter.map(|[open, close]| format!("{open}..{close}")));
     words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
     words.flag("--seed", *seed);
     words.flag("--tone", curve.as_deref().map(quoted));

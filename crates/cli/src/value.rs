@@ -1,6 +1,7 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
 use juggler::imaging::animation::PACES;
+use juggler::scene::compile::MAX_SHUTTER;
 use juggler::tracer::film::{BLOCK, Rect};
 use std::ops::Range;
 
@@ -64,6 +65,16 @@ pub fn frames(text: &str) -> Result<FrameRange, String> {
         }
         _ => Ok(FrameRange { first, end }),
     }
+}
+
+/// `0..0.5`: when the shutter opens and closes, in frames from the frame's own time.
+pub fn shutter(text: &str) -> Result<[f64; 2], String> {
+    let wrong =
+        || "a shutter is OPEN..CLOSE in frames from the frame's own time, such as 0..0.5 or -0.25..0.25".to_owned();
+    let (open, close) = text.split_once("..").ok_or_else(wrong)?;
+    let time = |text: &str| text.parse().ok().filter(|time: &f64| time.abs() <= MAX_SHUTTER).ok_or_else(wrong);
+    let [open, close] = [time(open)?, time(close)?];
+    if open <= close { Ok([open, close]) } else { Err(format!("the shutter closes before it opens in {text}")) }
 }
 
 /// `512M`, `4G`, `1.5GiB`, `100000`: bytes; K, M, G, T are powers of 1024.
@@ -181,6 +192,16 @@ mod tests {
         assert_eq!(frames(".."), Ok(FrameRange { first: 0, end: None }));
         for wrong in ["", "5", "5..5", "6..5", "a..b", "1...3", "-1..4"] {
             assert!(frames(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn shutters() {
+        assert_eq!(shutter("0..0.5"), Ok([0.0, 0.5]));
+        assert_eq!(shutter("-.25...25"), Ok([-0.25, 0.25]));
+        assert_eq!(shutter("0..0"), Ok([0.0, 0.0]));
+        for wrong in ["", "0", "0.5..0", "a..b", "0..nan", "0..inf", "0..1001"] {
+            assert!(shutter(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -5,7 +5,7 @@ use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
 use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, Scene, SceneError};
-use juggler_tracer::camera::{AnyCamera, Perspective, Projection};
+use juggler_tracer::camera::{AnyCamera, Perspective, Shot};
 use juggler_tracer::film::{Digest, Filter, Rect, Summary};
 use juggler_tracer::render::{self, BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
 use juggler_tracer::world::{SimdLevel, World};
@@ -20,7 +20,7 @@ pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"))
 #[derive(Clone)]
 pub struct Picture {
     compiled: Compiled,
-    projection: Projection,
+    shot: Shot,
     region: Rect,
     tone: Tone,
     limit: Limit,
@@ -74,12 +74,11 @@ impl Picture {
         let [width, height] = scene.description.render.size;
         let region = settings.region([width, height])?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
-        let projection = camera.1.project(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
+        let shot = compiled.shot(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
         let (tone, limit, mut of_scene) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
-        of_scene.set_camera(&camera.1);
+        of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
-        let mut picture =
-            Self { projection, region, tone, limit, fingerprint, of_scene, compiled, band_pixels: BAND_PIXELS };
+        let mut picture = Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels: BAND_PIXELS };
         picture.complete_fingerprint();
         Ok(picture)
     }
@@ -106,17 +105,21 @@ impl Picture {
             return Err(SceneError::Problems(problems).into());
         }
         let [width, height] = view.render.size;
-        let projected = view.camera.project(UVec2::new(width, height));
         let mut picture = self.clone();
-        picture.projection = projected.map_err(|error| Error::Settings(error.to_string()))?;
+        if view.camera != self.view().camera {
+            picture.compiled.course.clear();
+        }
         picture.region = Rect { x: 0, y: 0, width, height };
         (picture.tone, picture.limit) = (view.tone, Limit::Samples);
+        if let Some((_, camera)) = picture.compiled.cameras.first_mut() {
+            *camera = view.camera.clone();
+        }
+        let shot = picture.compiled.shot(UVec2::new(width, height));
+        picture.shot = shot.map_err(|error| Error::Settings(error.to_string()))?;
         picture.of_scene = self.of_scene.seen_as(&scene.fingerprint());
+        picture.of_scene.set_camera(&view.camera, &picture.compiled.course);
         picture.fingerprint = picture.of_scene.clone();
         picture.compiled.settings = view.render;
-        if let Some((_, camera)) = picture.compiled.cameras.first_mut() {
-            *camera = view.camera;
-        }
         picture.complete_fingerprint();
         Ok(picture)
     }
@@ -220,7 +223,7 @@ impl Picture {
         let samples = self.limit.spread_over(settings.samples);
         Job {
             world: &self.compiled.world,
-            camera: &self.projection,
+            camera: &self.shot,
             integrator: &*settings.integrator,
             filter: settings.filter.filter(samples),
             pattern: settings.sampler.pattern(samples),

@@ -74,6 +74,8 @@ pub struct Settings {
     pub max_depth: Option<u32>,
     /// Name of one of the scene's cameras.
     pub camera: Option<String>,
+    /// When the shutter opens and closes, in frames from the frame's own time.
+    pub shutter: Option<[f64; 2]>,
     /// Another seed, another noise.
     pub seed: Option<u64>,
     /// The part of the picture that is rendered; all of it without.
@@ -102,6 +104,7 @@ impl Settings {
     pub fn apply_to(&self, render: &mut Render, tone: &mut Tone) -> Result<(), Error> {
         render.size = self.size.unwrap_or(render.size);
         render.samples = self.samples.unwrap_or(self.limit.most(render.samples));
+        render.shutter = self.shutter.unwrap_or(render.shutter);
         render.seed = self.seed.unwrap_or(render.seed);
         if let Some(name) = self.integrator.as_deref().filter(|name| *name != render.integrator.name()) {
             render.integrator = by_name("integrator", name)?;

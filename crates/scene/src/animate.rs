@@ -31,6 +31,16 @@ pub fn resolve(tree: &Node, sources: &Sources, frame: f64) -> (Node, Vec<Finding
     (resolved, walk.findings)
 }
 
+/// Whether anything of a scene may change from frame to frame. Sometimes it says so although nothing does.
+pub fn depends_on_time(tree: &Node) -> bool {
+    match &tree.value {
+        Value::String(text) => ["frame", "seconds"].iter().any(|name| text.contains(name)),
+        Value::Array(elements) => elements.iter().any(depends_on_time),
+        Value::Object(members) => members.values().any(|member| depends_on_time(&member.node)),
+        _ => false,
+    }
+}
+
 /// What expressions may use in any scene.
 fn given(tree: &Node, frame: f64) -> Names {
     let number = |key: &str, default: f64| {

@@ -24,8 +24,8 @@ const MEANING: &[u8] = b"juggler scene 2\n";
 pub struct Fingerprint(BTreeMap<String, String>);
 
 impl Fingerprint {
-    /// Of a description and the files it names.
-    pub(crate) fn of(scene: &Description, files: &Files<'_>) -> Self {
+    /// Of a description, what it is at `moments` while the shutter is open, and the files it names.
+    pub(crate) fn of(scene: &Description, moments: &[Description], files: &Files<'_>) -> Self {
         let mut bare = scene.clone();
         bare.title.clear();
         bare.description.clear();
@@ -48,6 +48,10 @@ impl Fingerprint {
                 _ => parts.insert(key, &digest(value.to_string().as_bytes())),
             }
         }
+        if !moments.is_empty() {
+            let all: Vec<_> = moments.iter().map(|at| (&at.groups, &at.lights, &at.objects)).collect();
+            parts.insert("motion", &digest(&serde_json::to_vec(&all).unwrap_or_default()));
+        }
         for file in mesh_files(scene, files) {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             parts.insert(&format!("file {name}"), &digest(&files.library.digest(&file)));
@@ -64,16 +68,20 @@ impl Fingerprint {
         part.push_str(value);
     }
 
-    /// What is looked through, where the scene leaves it open.
-    pub fn set_camera(&mut self, camera: &AnyCamera) {
-        let json = serde_json::to_value(camera).unwrap_or_default();
-        self.0.insert("camera".into(), digest(json.to_string().as_bytes()));
+    /// What is looked through, where the scene leaves it open, and its `course` while the shutter is open.
+    pub fn set_camera(&mut self, camera: &AnyCamera, course: &[AnyCamera]) {
+        let hash = |json: Value| digest(json.to_string().as_bytes());
+        self.0.insert("camera".into(), hash(serde_json::to_value(camera).unwrap_or_default()));
+        self.0.remove("camera.course");
+        if !course.is_empty() {
+            self.0.insert("camera.course".into(), hash(serde_json::to_value(course).unwrap_or_default()));
+        }
     }
 
     /// The same with the camera and the settings of another.
     #[must_use]
     pub fn seen_as(&self, other: &Self) -> Self {
-        let of_view = |name: &str| name == "camera" || name.starts_with("render.");
+        let of_view = |name: &str| name.starts_with("camera") || name.starts_with("render.");
         let own = self.0.iter().filter(|(name, _)| !of_view(name));
         let others = other.0.iter().filter(|(name, _)| of_view(name));
         Self(own.chain(others).map(|(name, value)| (name.clone(), value.clone())).collect())

@@ -17,6 +17,7 @@ pub mod expression;
 mod fingerprint;
 pub mod import;
 pub mod kind;
+mod moments;
 pub mod named;
 pub mod path;
 mod presets;

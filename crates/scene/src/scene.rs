@@ -4,6 +4,7 @@ use crate::compile::{self, Assembly, Compiled, Files, Library, Needs};
 use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::{Fingerprint, mesh_files};
+use crate::moments::Moments;
 use crate::named::Unknown;
 use crate::report::{Finding, Problems, plain_io};
 use crate::store::{Bundle, Store};
@@ -76,11 +77,12 @@ pub struct Scene {
 }
 
 /// A scene's files, and its tree at the frame.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct Origin {
     document: Arc<Document>,
     frame: f64,
     resolved: Node,
+    moments: Moments,
 }
 
 impl Scene {
@@ -159,27 +161,29 @@ impl Scene {
         let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, frame);
         findings.extend(wrong);
         let description = described(&resolved, &mut findings);
-        let origin = Arc::new(Origin { document, frame, resolved });
+        let origin = Arc::new(Origin { document, frame, resolved, moments: Moments::default() });
         let whole = description.is_some() && findings.is_empty();
         let scene = Self { description: description.unwrap_or_default(), origin: Some(origin), library };
         if whole {
             return Ok(scene);
         }
         // What could be read is checked too, so that all mistakes come at once.
-        let more = Assembly::of(&scene.description, scene.files()).1;
+        let more = Assembly::of(&scene.description, &[], scene.files()).1;
         Err(SceneError::Problems(scene.report(joined(findings, more))))
     }
 
     /// All that is wrong with the scene, warnings included, without building the world.
     pub fn check(&self) -> Problems {
-        let more = Assembly::of(&self.description, self.files()).1;
-        self.report(joined(self.own_findings(), more))
+        let (moments, wrong) = self.moments();
+        let more = Assembly::of(&self.description, &moments, self.files()).1;
+        self.report(joined(joined(self.own_findings(), wrong), more))
     }
 
     /// Builds the world.
     pub fn compile(&self) -> Result<Compiled, SceneError> {
-        let (assembly, more) = Assembly::of(&self.description, self.files());
-        let findings = joined(self.own_findings(), more);
+        let (moments, wrong) = self.moments();
+        let (assembly, more) = Assembly::of(&self.description, &moments, self.files());
+        let findings = joined(joined(self.own_findings(), wrong), more);
         let broken = findings.iter().any(Finding::is_error);
         let problems = self.report(findings);
         if broken {
@@ -191,15 +195,16 @@ impl Scene {
     /// Compiles the scene with the world of an earlier compilation, which must be this scene's too:
     /// [`Scene::has_world_of`].
     pub fn compile_with(&self, earlier: &Compiled) -> Result<Compiled, SceneError> {
-        let (cameras, findings) = compile::look_at(&self.description, &earlier.world);
-        let findings = joined(self.own_findings(), findings);
+        let (moments, wrong) = self.moments();
+        let (cameras, course, findings) = compile::look_at(&self.description, &moments, &earlier.world);
+        let findings = joined(joined(self.own_findings(), wrong), findings);
         let broken = findings.iter().any(Finding::is_error);
         let warnings = self.report(findings);
         if broken {
             return Err(SceneError::Problems(warnings));
         }
         let (world, settings) = (Arc::clone(&earlier.world), self.description.render.clone());
-        Ok(Compiled { world, cameras, settings, warnings })
+        Ok(Compiled { world, cameras, course, settings, warnings })
     }
 
     /// Whether the same stands in both, however it is looked at. Mesh files are compared by their contents.
@@ -208,9 +213,25 @@ impl Scene {
         let digests = |scene: &Self| -> Vec<(PathBuf, [u8; 32])> {
             scene.mesh_files().into_iter().map(|file| (file.clone(), scene.library.digest(&file))).collect()
         };
+        let same_motion = || {
+            let (a, b) = (self.moments().0, other.moments().0);
+            let placed = |moments: &[Description]| -> Vec<_> {
+                moments.iter().map(|at| (at.groups.clone(), at.lights.clone(), at.objects.clone())).collect()
+            };
+            Arc::ptr_eq(&a, &b) || placed(&a) == placed(&b)
+        };
         (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
             && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
             && digests(self) == digests(other)
+            && same_motion()
+    }
+
+    /// What it is at even times while the shutter is open, from opening to closing; nothing when it does not change.
+    fn moments(&self) -> (Arc<Vec<Description>>, Vec<Finding>) {
+        match &self.origin {
+            Some(origin) => origin.moments.of(&origin.document, origin.frame, self.description.render.shutter),
+            None => Default::default(),
+        }
     }
 
     fn mesh_files(&self) -> BTreeSet<PathBuf> {
@@ -230,7 +251,7 @@ impl Scene {
 
     /// Everything that decides the pixels, however many samples are taken.
     pub fn fingerprint(&self) -> Fingerprint {
-        Fingerprint::of(&self.description, &self.files())
+        Fingerprint::of(&self.description, &self.moments().0, &self.files())
     }
 
     /// The scene as a file, expressions resolved.
@@ -279,7 +300,7 @@ fn joined(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
 
 /// The types of a tree, as far as it fits them, and all that is wrong with it: what does not fit the schema, and
 /// what is wrong with the rest.
-fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Description> {
+pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Description> {
     let mut validated = validate(tree);
     findings.append(&mut validated.findings);
     let json = validated.json?;

@@ -17,7 +17,7 @@ const NEAR: f64 = 2e-4;
 fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     let scene = Scene::built_in("juggler").unwrap().at_frame(frame).unwrap();
     let library = Library::default();
-    let (assembly, findings) = Assembly::of(&scene.description, Files { origin: None, library: &library });
+    let (assembly, findings) = Assembly::of(&scene.description, &[], Files { origin: None, library: &library });
     assert!(findings.is_empty(), "{findings:?}");
     let shape = |object: &Object| object.content.as_shape().unwrap().as_ref().clone();
     let ground = assembly.objects.iter().filter(|object| matches!(shape(object), AnyShape::Plane(_))).count();
@@ -30,7 +30,7 @@ fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     let placed = assembly
         .objects
         .iter()
-        .filter_map(|object| Some((object.transform.point(Vec3::ZERO).as_dvec3(), sphere(object)?)));
+        .filter_map(|object| Some((object.motion.at(0.0).point(Vec3::ZERO).as_dvec3(), sphere(object)?)));
     placed.collect()
 }
 

@@ -282,7 +282,7 @@ impl Subject {
 
     /// The ray through a place of the film, in pixels, and the middle of the lens.
     pub fn ray(&self, pixel: [f32; 2]) -> Ray {
-        self.picture.job().camera.ray(Vec2::from_array(pixel), Vec2::splat(0.5), 0.0)
+        self.picture.job().camera.at(0.5).ray(Vec2::from_array(pixel), Vec2::splat(0.5), 0.5)
     }
 
     /// Writes down how things stand.

@@ -5,13 +5,13 @@ use crate::path::Path;
 use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
-use juggler_tracer::camera::AnyCamera;
-use juggler_tracer::light::AnyLight;
+use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
 use juggler_tracer::material::MaterialTable;
-use juggler_tracer::world::{Object, World};
+use juggler_tracer::world::{Lamp, Object, World};
 use std::sync::Arc;
 
 mod count;
+mod course;
 mod defaults;
 mod locate;
 mod materials;
@@ -24,7 +24,7 @@ pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub use locate::Part;
 pub use meshes::{Files, Library};
 pub use needs::Needs;
-pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
+pub use settings::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES, MAX_SHUTTER};
 
 /// A scene ready to be rendered.
 #[derive(Clone)]
@@ -33,6 +33,8 @@ pub struct Compiled {
     pub world: Arc<World>,
     /// The cameras with their names, the one to render with first. There is always one.
     pub cameras: Vec<(String, AnyCamera)>,
+    /// The first camera at even times from opening to closing of the shutter; nothing when it stays as it is.
+    pub course: Vec<AnyCamera>,
     /// Size, samples, integrator and the like.
     pub settings: Render,
     /// What people should know about the scene.
@@ -46,22 +48,39 @@ pub struct Assembly {
     /// What they are made of.
     pub materials: MaterialTable,
     /// The lights.
-    pub lights: Vec<AnyLight>,
+    pub lights: Vec<Lamp>,
     /// What lies behind everything.
     pub background: AnyBackground,
     /// Cameras by name, the chosen one first.
     pub cameras: Vec<(String, AnyCamera)>,
+    /// As [`Compiled::course`].
+    pub course: Vec<AnyCamera>,
+}
+
+impl Compiled {
+    /// The first camera for pictures of `size` pixels, while the shutter is open.
+    pub fn shot(&self, size: UVec2) -> Result<Shot, InvalidCamera> {
+        let keys: Result<Vec<_>, _> = self.course.iter().map(|camera| camera.project(size)).collect();
+        let mut keys = keys?.into_iter();
+        match (keys.next(), self.cameras.first()) {
+            (Some(first), _) => Ok(Shot::moving(first, keys.collect())),
+            (None, Some((_, camera))) => Ok(camera.project(size)?.into()),
+            // There is always one.
+            (None, None) => Ok(AnyCamera::from(Perspective::default()).project(size)?.into()),
+        }
+    }
 }
 
 impl Assembly {
-    /// Puts everything together; what cannot be is left out and reported.
-    pub fn of(scene: &Description, files: Files<'_>) -> (Self, Vec<Finding>) {
+    /// Puts everything together; what cannot be is left out and reported. `moments` are what the scene is at even times
+    /// from opening to closing of the shutter; nothing when it does not change.
+    pub fn of(scene: &Description, moments: &[Description], files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
         settings::check(&scene.render, &mut findings);
         settings::check_light(scene, &mut findings);
         let mut materials = materials::Materials::new(scene, &mut findings);
         let objects = match count::count(scene) {
-            Ok(counts) => placing::place(scene, &counts, files, &mut materials, &mut findings),
+            Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
             Err(problems) => {
                 findings.extend(problems);
                 Vec::new()
@@ -69,27 +88,39 @@ impl Assembly {
         };
         let lit = !scene.lights.is_empty() || materials.glows();
         let bounds = bounds(&objects);
-        let cameras = cameras(scene, &bounds, &mut findings);
-        let lights = if lit { scene.lights.clone() } else { defaults::lights(&bounds) };
+        let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
+        let lights = if lit {
+            course::lamps(scene, moments)
+        } else {
+            defaults::lights(&bounds).into_iter().map(Lamp::from).collect()
+        };
         let background = scene.background.clone().map(AnyBackground::from);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut findings);
-        (Self { objects, materials, lights, background, cameras }, findings)
+        (Self { objects, materials, lights, background, cameras, course }, findings)
     }
 
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background);
-        Compiled { world: Arc::new(world), cameras: self.cameras, settings, warnings }
+        let (cameras, course) = (self.cameras, self.course);
+        Compiled { world: Arc::new(world), cameras, course, settings, warnings }
     }
 }
 
-/// How a scene looks at its world, which is there already: its cameras by name, the chosen one first.
-pub fn look_at(scene: &Description, world: &World) -> (Vec<(String, AnyCamera)>, Vec<Finding>) {
+/// Cameras by name, the chosen one first, and what that one does while the shutter is open.
+type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
+
+/// How a scene looks at its world, which is there already.
+pub fn look_at(
+    scene: &Description,
+    moments: &[Description],
+    world: &World,
+) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
     let mut findings = Vec::new();
     settings::check(&scene.render, &mut findings);
-    let cameras = cameras(scene, &or_some(world.bounds()), &mut findings);
-    (cameras, findings)
+    let (cameras, course) = cameras(scene, moments, &or_some(world.bounds()), &mut findings);
+    (cameras, course, findings)
 }
 
 /// A box around all objects that have an end.
@@ -103,7 +134,7 @@ fn or_some(bounds: Aabb) -> Aabb {
 }
 
 /// The scene's cameras or the default one, each tried once; the chosen one first.
-fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> Vec<(String, AnyCamera)> {
+fn cameras(scene: &Description, moments: &[Description], bounds: &Aabb, findings: &mut Vec<Finding>) -> Cameras {
     let [width, height] = scene.render.size;
     let size = UVec2::new(width.max(1), height.max(1));
     let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
@@ -127,7 +158,16 @@ fn cameras(scene: &Description, bounds: &Aabb, findings: &mut Vec<Finding>) -> V
     {
         cameras[..=at].rotate_right(1);
     }
-    cameras
+    let course = cameras.first().map(|(name, _)| course::camera(scene, moments, name)).unwrap_or_default();
+    for (camera, moment) in course.iter().zip(moments) {
+        // The same mistake at the frame itself has been reported.
+        if let (Err(invalid), true) = (camera.project(size), findings.is_empty()) {
+            let path = Path::root().key(if moment.camera.is_some() { "camera" } else { "cameras" });
+            let message = format!("while the shutter is open, {}", invalid.message);
+            findings.push(Finding::error(message).at(&path.join(invalid.field)));
+        }
+    }
+    (cameras, course)
 }
 
 fn try_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {

@@ -6,16 +6,18 @@ use super::meshes::Files;
 use crate::description::{Bead, Description, Object, TransformStep};
 use crate::path::{Path, Trail};
 use crate::report::Finding;
-use juggler_math::Transform;
+use juggler_math::{Motion, Transform, Vec3};
 use juggler_tracer::material::MaterialId;
 use juggler_tracer::shape::{AnyShape, Sphere};
 use juggler_tracer::world::{self, Content as Placed, Level};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// All objects of a scene whose groups were counted.
+/// All objects of a scene whose groups were counted. Where `moments` of the time that the shutter is open say otherwise
+/// than the scene, they move.
 pub fn place(
     scene: &Description,
+    moments: &[Description],
     counts: &Counts<'_>,
     files: Files<'_>,
     materials: &mut Materials,
@@ -26,9 +28,14 @@ pub fn place(
     let groups = scene
         .groups
         .iter()
-        .map(|(name, objects)| (name.as_str(), preparing.objects(objects, &groups.key(name))))
+        .map(|(name, objects)| {
+            let moments: Vec<&[Object]> =
+                moments.iter().filter_map(|at| at.groups.get(name)).map(Vec::as_slice).collect();
+            (name.as_str(), preparing.objects(objects, &moments, &groups.key(name)))
+        })
         .collect();
-    let top = preparing.objects(&scene.objects, &Trail::Root.key("objects"));
+    let moments: Vec<&[Object]> = moments.iter().map(|at| at.objects.as_slice()).collect();
+    let top = preparing.objects(&scene.objects, &moments, &Trail::Root.key("objects"));
     let plain = preparing.materials.plain();
     let mut placing = Placing { groups, levels: BTreeMap::new() };
     // Groups come after those that they place: a shared one finds its own levels built.
@@ -41,13 +48,13 @@ pub fn place(
 
 /// An object whose shapes are prepared and whose names are looked up.
 struct Prepared<'s> {
-    transform: Transform,
+    motion: Motion,
     material: Option<MaterialId>,
     content: Content<'s>,
 }
 
 enum Content<'s> {
-    Shapes(Vec<(Transform, Arc<AnyShape>)>),
+    Shapes(Vec<(Motion, Arc<AnyShape>)>),
     Group(&'s str),
     Objects(Vec<Prepared<'s>>),
 }
@@ -59,32 +66,43 @@ struct Preparing<'m> {
 }
 
 impl Preparing<'_> {
-    fn objects<'s>(&mut self, objects: &'s [Object], path: &Trail<'_>) -> Vec<Prepared<'s>> {
-        objects.iter().enumerate().filter_map(|(i, object)| self.object(object, &path.index(i))).collect()
+    /// `moments` are the same objects at other times; where there are not as many, nothing moves.
+    fn objects<'s>(&mut self, objects: &'s [Object], moments: &[&[Object]], path: &Trail<'_>) -> Vec<Prepared<'s>> {
+        let moments = if moments.iter().all(|at| at.len() == objects.len()) { moments } else { &[] };
+        let object = |(i, object): (usize, &'s Object)| {
+            let at: Vec<&Object> = moments.iter().filter_map(|at| at.get(i)).collect();
+            let at = if at.iter().all(|other| *other == object) { &[] } else { at.as_slice() };
+            self.object(object, at, &path.index(i))
+        };
+        objects.iter().enumerate().filter_map(object).collect()
     }
 
-    fn object<'s>(&mut self, object: &'s Object, path: &Trail<'_>) -> Option<Prepared<'s>> {
-        let transform = self.transform(&object.transform, &path.key("transform"));
+    fn object<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Prepared<'s>> {
+        let motion = self.motion(&object.transform, at, &path.key("transform"));
         let material = object.material.as_ref();
         let material = material.map(|m| self.materials.get(m, &path.key("material"), self.findings));
-        let content = self.content(object, path)?;
-        Some(Prepared { transform: transform?, material, content })
+        let content = self.content(object, at, path)?;
+        Some(Prepared { motion: motion?, material, content })
     }
 
     /// The one thing that an object is. That it is exactly one has been checked before.
-    fn content<'s>(&mut self, object: &'s Object, path: &Trail<'_>) -> Option<Content<'s>> {
+    fn content<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Content<'s>> {
         if let Some(shape) = &object.shape {
-            let shape = self.shape(shape, &path.key("shape"))?;
-            Some(Content::Shapes(vec![(Transform::IDENTITY, Arc::new(shape))]))
+            let prepared = self.shape(shape, &path.key("shape"))?;
+            let others = at.iter().filter_map(|at| at.shape.as_ref());
+            Some(Content::Shapes(vec![(growth(shape, others), Arc::new(prepared))]))
         } else if let Some(group) = &object.group {
             Some(Content::Group(&group.0))
         } else if let Some(objects) = &object.objects {
-            Some(Content::Objects(self.objects(objects, &path.key("objects"))))
+            let at: Vec<&[Object]> = at.iter().filter_map(|at| at.objects.as_deref()).collect();
+            Some(Content::Objects(self.objects(objects, &at, &path.key("objects"))))
         } else if let Some(chain) = &object.chain {
-            Some(self.beads(chain.beads(), &path.key("chain")))
+            let at = at.iter().filter_map(|at| at.chain.as_ref()).map(|chain| chain.beads().collect());
+            Some(self.beads(chain.beads().collect(), at.collect(), &path.key("chain")))
         } else if let Some(limb) = &object.limb {
+            let at = at.iter().filter_map(|at| at.limb.as_ref()?.beads().ok());
             match limb.beads() {
-                Ok(beads) => Some(self.beads(beads, &path.key("limb"))),
+                Ok(beads) => Some(self.beads(beads, at.collect(), &path.key("limb"))),
                 Err(wrong) => self.fail(wrong.message, path.key("limb").join(wrong.field)),
             }
         } else {
@@ -106,15 +124,31 @@ impl Preparing<'_> {
         }
     }
 
-    fn beads<'s>(&mut self, beads: impl IntoIterator<Item = Bead>, path: &Trail<'_>) -> Content<'s> {
+    /// Spheres in a row, `at` other times too; where there are not as many, none moves.
+    fn beads<'s>(&mut self, beads: Vec<Bead>, at: Vec<Vec<Bead>>, path: &Trail<'_>) -> Content<'s> {
+        let at = if at.iter().all(|other| other.len() == beads.len()) { at } else { Vec::new() };
         let mut shapes = Vec::new();
-        for Bead { center, radius } in beads {
-            let sphere = Sphere { radius };
-            if let Some(shape) = self.shape(&sphere.into(), path) {
-                shapes.push((Transform::translation(center), Arc::new(shape)));
-            }
+        for (i, Bead { center, radius }) in beads.into_iter().enumerate() {
+            let Some(shape) = self.shape(&Sphere { radius }.into(), path) else { continue };
+            let key = |bead: &Bead| {
+                let grown = Transform::scale(Vec3::splat(bead.radius / radius)).unwrap_or(Transform::IDENTITY);
+                grown.then(&Transform::translation(bead.center))
+            };
+            let keys = at.iter().filter_map(|beads| beads.get(i)).map(key).collect();
+            let still = Transform::translation(center).into();
+            shapes.push((Motion::through(keys).unwrap_or(still), Arc::new(shape)));
         }
         Content::Shapes(shapes)
+    }
+
+    /// The steps of an object, and what they are at other times.
+    fn motion(&mut self, steps: &[TransformStep], at: &[&Object], path: &Trail<'_>) -> Option<Motion> {
+        let still = self.transform(steps, path)?;
+        let keys: Option<Vec<Transform>> = match at.iter().all(|at| at.transform == steps) {
+            true => None,
+            false => at.iter().map(|at| joined(&at.transform)).collect(),
+        };
+        Some(keys.and_then(Motion::through).unwrap_or(still.into()))
     }
 
     fn transform(&mut self, steps: &[TransformStep], path: &Trail<'_>) -> Option<Transform> {
@@ -138,6 +172,39 @@ impl Preparing<'_> {
     }
 }
 
+/// All steps as one; `None` where one of them cannot be.
+fn joined(steps: &[TransformStep]) -> Option<Transform> {
+    let next = |whole: Transform, step: &TransformStep| Some(whole.then(&step.transform().ok()?));
+    steps.iter().try_fold(Transform::IDENTITY, next)
+}
+
+/// A sphere whose radius changes is one that is scaled.
+fn growth<'a>(shape: &AnyShape, others: impl Iterator<Item = &'a AnyShape>) -> Motion {
+    let AnyShape::Sphere(sphere) = shape else { return Transform::IDENTITY.into() };
+    let keys = others.map(|other| match other {
+        AnyShape::Sphere(other) => Transform::scale(Vec3::splat(other.radius / sphere.radius)),
+        _ => None,
+    });
+    let keys: Option<Vec<Transform>> = keys.collect();
+    keys.and_then(Motion::through).unwrap_or(Transform::IDENTITY.into())
+}
+
+/// How large something is after a motion, if it has a size.
+fn size(motion: &Motion, content: &Placed) -> f32 {
+    let bounds = match content {
+        Placed::Shape(shape) => shape.bounds(),
+        Placed::Level(level) => level.bounds(),
+    };
+    let size = motion.at(0.0).aabb(&bounds).extent().length();
+    if size.is_finite() { size } else { 1.0 }
+}
+
+/// An object in its place, its turns round.
+fn placed(content: Placed, motion: Motion, material: Option<MaterialId>) -> world::Object {
+    let motion = if motion.moves() { motion.clone().smoothed(size(&motion, &content)) } else { motion };
+    world::Object { content, motion, material }
+}
+
 struct Placing<'s> {
     groups: BTreeMap<&'s str, Vec<Prepared<'s>>>,
     /// Groups that are shared, as far as they are built.
@@ -147,39 +214,44 @@ struct Placing<'s> {
 impl Placing<'_> {
     /// The objects of one level; those that say nothing are made of `inherited`.
     fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<world::Object> {
-        let mut placed = Vec::new();
-        self.place(objects, &Transform::IDENTITY, inherited, &mut placed);
-        placed
+        let mut all = Vec::new();
+        self.place(objects, &Transform::IDENTITY.into(), inherited, &mut all);
+        all
     }
 
     fn place(
         &self,
         objects: &[Prepared<'_>],
-        parent: &Transform,
+        parent: &Motion,
         inherited: Option<MaterialId>,
-        placed: &mut Vec<world::Object>,
+        all: &mut Vec<world::Object>,
     ) {
         for object in objects {
-            let transform = object.transform.then(parent);
+            let motion = object.motion.then(parent);
             let material = object.material.or(inherited);
             match &object.content {
-                Content::Shapes(shapes) => placed.extend(shapes.iter().map(|(place, shape)| world::Object {
-                    content: Placed::Shape(Arc::clone(shape)),
-                    transform: place.then(&transform),
-                    material,
-                })),
-                Content::Objects(objects) => self.place(objects, &transform, material, placed),
+                Content::Shapes(shapes) => objects_of(shapes, &motion, material, all),
+                Content::Objects(objects) => self.place(objects, &motion, material, all),
                 Content::Group(name) => match self.levels.get(name) {
-                    Some(level) => {
-                        let content = Placed::Level(Arc::clone(level));
-                        placed.push(world::Object { content, transform, material });
-                    }
+                    Some(level) => all.push(placed(Placed::Level(Arc::clone(level)), motion, material)),
                     None => {
                         let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
-                        self.place(objects, &transform, material, placed);
+                        self.place(objects, &motion, material, all);
                     }
                 },
             }
         }
     }
+}
+
+fn objects_of(
+    shapes: &[(Motion, Arc<AnyShape>)],
+    motion: &Motion,
+    material: Option<MaterialId>,
+    all: &mut Vec<world::Object>,
+) {
+    let object = |(place, shape): &(Motion, Arc<AnyShape>)| {
+        placed(Placed::Shape(Arc::clone(shape)), place.then(motion), material)
+    };
+    all.extend(shapes.iter().map(object));
 }

@@ -8,6 +8,8 @@ use crate::report::Finding;
 pub const MAX_EDGE: u32 = 65_536;
 /// Most pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 31;
+/// How far from a frame its shutter may be open, in frames.
+pub const MAX_SHUTTER: f64 = 1000.0;
 /// Most samples of a pixel.
 pub const MAX_SAMPLES: u32 = 1 << 24;
 
@@ -26,6 +28,12 @@ pub fn check(render: &Render, findings: &mut Vec<Finding>) {
     if !(1..=MAX_SAMPLES).contains(&render.samples) {
         let message = format!("`samples` must be between 1 and {MAX_SAMPLES}, is {}", render.samples);
         findings.push(Finding::error(message).at(path.key("samples")));
+    }
+    let [open, close] = render.shutter;
+    if !(open <= close && open.abs() <= MAX_SHUTTER && close.abs() <= MAX_SHUTTER) {
+        let message =
+            format!("the shutter must open before it closes, within {MAX_SHUTTER} frames; it is {open} to {close}");
+        findings.push(Finding::error(message).at(path.key("shutter")));
     }
 }
 

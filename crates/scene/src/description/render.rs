@@ -25,6 +25,11 @@ pub struct Render {
     /// Name of the camera; the first when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraName>,
+    /// When the shutter opens and closes, in frames from the frame's own time: what moves meanwhile is blurred.
+    /// `[0, 0.5]` is a film camera's half turn; `[0, 0]`, the default, an instant.
+    #[serde(skip_serializing_if = "is_instant")]
+    #[schemars(inner(range(min = -1000, max = 1000)))]
+    pub shutter: [f64; 2],
     /// How light is followed.
     pub integrator: AnyIntegrator,
     /// How samples are spread.
@@ -40,11 +45,16 @@ impl Default for Render {
             samples: 16,
             seed: 0,
             camera: None,
+            shutter: [0.0, 0.0],
             integrator: AnyIntegrator::default(),
             sampler: AnySampler::default(),
             filter: AnyFilter::default(),
         }
     }
+}
+
+fn is_instant(shutter: &[f64; 2]) -> bool {
+    *shutter == [0.0, 0.0]
 }
 
 /// Name of one of the scene's cameras.

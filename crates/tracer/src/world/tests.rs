@@ -7,7 +7,7 @@ use crate::material::{Checkerboard, MaterialCompiler, MaterialRef, Resolver};
 use crate::shape::{AnyShape, Mesh, MeshData, Plane, Sphere};
 use crate::texture::TextureTable;
 use juggler_math::testing::Random;
-use juggler_math::{Motion, Transform, Vec3};
+use juggler_math::{Transform, Vec3};
 use std::sync::Arc;
 
 const NO_LIGHTS: [Lamp; 0] = [];

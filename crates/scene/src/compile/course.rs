@@ -1,0 +1,105 @@
+//! What changes while the shutter is open, and is no object: lights and the camera that is looked through.
+
+use crate::description::Description;
+use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::world::Lamp;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// In so many parts of the time that the shutter is open, a light that changes is as it is in their middles.
+const PARTS: usize = 256;
+
+/// The lights; those that are not the same at all `moments` change from one to the next.
+pub fn lamps(scene: &Description, moments: &[Description]) -> Vec<Lamp> {
+    let lamp = |(i, light): (usize, &AnyLight)| {
+        let keys: Option<Vec<&AnyLight>> = moments.iter().map(|moment| moment.lights.get(i)).collect();
+        let keys = keys.filter(|keys| keys.iter().any(|key| *key != light)).unwrap_or_default();
+        let mut parts = (0..if keys.is_empty() { 0 } else { PARTS }).map(|part| at_part(&keys, part, light));
+        match parts.next() {
+            Some(first) => Lamp::moving(first, parts.collect()),
+            None => Lamp::from(light.clone()),
+        }
+    };
+    scene.lights.iter().enumerate().map(lamp).collect()
+}
+
+fn at_part(keys: &[&AnyLight], part: usize, otherwise: &AnyLight) -> AnyLight {
+    let place = (part as f64 + 0.5) / PARTS as f64 * (keys.len() - 1) as f64;
+    let key = place as usize;
+    let (Some(from), Some(to)) = (keys.get(key), keys.get(key + 1)) else { return otherwise.clone() };
+    between(*from, *to, place - key as f64).unwrap_or_else(|| (*from).clone())
+}
+
+/// The camera that is looked through, at the moments; nothing when it is the same at all, or not the scene's.
+pub fn camera(scene: &Description, moments: &[Description], name: &str) -> Vec<AnyCamera> {
+    let of = |scene: &'_ Description| -> Option<AnyCamera> {
+        let single = scene.camera.as_ref().filter(|_| name == "camera");
+        single.or_else(|| scene.cameras.get(name)).cloned()
+    };
+    let keys: Option<Vec<AnyCamera>> = moments.iter().map(of).collect();
+    let keys = keys.unwrap_or_default();
+    if keys.iter().all(|key| Some(key) == of(scene).as_ref()) { Vec::new() } else { keys }
+}
+
+/// A share of the way from one thing to another: every number of its description goes straight.
+fn between<T: Serialize + DeserializeOwned>(from: &T, to: &T, share: f64) -> Option<T> {
+    let (mut value, to) = (serde_json::to_value(from).ok()?, serde_json::to_value(to).ok()?);
+    go(&mut value, &to, share)?;
+    serde_json::from_value(value).ok()
+}
+
+fn go(value: &mut Value, to: &Value, share: f64) -> Option<()> {
+    match (value, to) {
+        (Value::Number(from), Value::Number(to)) => {
+            // Counts stay counts.
+            if from != to && from.is_f64() {
+                *from = serde_json::Number::from_f64(from.as_f64()? * (1.0 - share) + to.as_f64()? * share)?;
+            }
+            Some(())
+        }
+        (Value::Array(from), Value::Array(to)) if from.len() == to.len() => {
+            from.iter_mut().zip(to).try_for_each(|(from, to)| go(from, to, share))
+        }
+        (Value::Object(from), Value::Object(to)) if from.len() == to.len() => {
+            from.iter_mut().try_for_each(|(key, from)| go(from, to.get(key)?, share))
+        }
+        (from, to) => (from == to).then_some(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(x: f64, intensity: f64, samples: u32) -> Description {
+        let lights = format!(
+            r#"[{{"point": {{"position": [{x}, 1, 0], "intensity": {intensity}, "samples": {samples}}}}},
+                {{"ambient": {{"intensity": {intensity}}}}}]"#
+        );
+        Description { lights: serde_json::from_str(&lights).unwrap(), ..Description::default() }
+    }
+
+    fn place(lamp: &Lamp, time: f32) -> f32 {
+        match &lamp.at(time).light {
+            AnyLight::Point(point) => point.position.x,
+            _ => panic!("no point"),
+        }
+    }
+
+    #[test]
+    fn lights_go_from_moment_to_moment() {
+        let moments = [scene(0.0, 1.0, 2), scene(4.0, 2.0, 2), scene(4.0, 3.0, 2)];
+        let all = lamps(&moments[1], &moments);
+        for (time, x) in [(0.0, 0.0), (0.25, 2.0), (0.5, 4.0), (0.99, 4.0)] {
+            assert!((place(&all[0], time) - x).abs() < 0.02, "{time}");
+        }
+        assert!(all[0].moves() && all[1].moves());
+        let still = lamps(&moments[0], &[scene(0.0, 1.0, 2), scene(0.0, 1.0, 2)]);
+        assert!(!still[0].moves() && place(&still[0], 0.5) == 0.0);
+        assert!(!lamps(&moments[0], &[])[0].moves());
+        let counts = lamps(&moments[0], &[scene(0.0, 1.0, 2), scene(2.0, 1.0, 5)]);
+        assert!((place(&counts[0], 0.5) - 1.0).abs() < 0.01);
+    }
+}
