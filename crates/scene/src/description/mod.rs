@@ -13,12 +13,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 mod animation;
+mod bones;
 mod object;
 mod render;
 mod spheres;
 mod transform;
 
 pub use animation::{Animation, Variable};
+pub use bones::Bones;
+pub(crate) use bones::positive_items;
 pub use object::{GroupName, Object};
 pub use render::{CameraName, Render};
 pub use spheres::{Bead, Chain, ControlSphere, Limb};
