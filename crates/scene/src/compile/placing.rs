@@ -60,7 +60,8 @@ struct Preparing<'m> {
 
 impl Preparing<'_> {
     fn objects<'s>(&mut self, objects: &'s [Object], path: &Trail<'_>) -> Vec<Prepared<'s>> {
-        objects.iter().enumerate().filter_map(|(i, object)| self.object(object, &path.index(i))).collect()
+        let visible = objects.iter().enumerate().filter(|(_, object)| object.is_visible());
+        visible.filter_map(|(i, object)| self.object(object, &path.index(i))).collect()
     }
 
     fn object<'s>(&mut self, object: &'s Object, path: &Trail<'_>) -> Option<Prepared<'s>> {

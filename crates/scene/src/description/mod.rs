@@ -22,7 +22,7 @@ mod transform;
 pub use animation::{Animation, Variable};
 pub use bones::Bones;
 pub(crate) use bones::positive_items;
-pub use object::{GroupName, Object};
+pub use object::{GroupName, Object, Visible};
 pub use render::{CameraName, Render};
 pub use spheres::{Bead, Chain, ControlSphere, Limb};
 pub use transform::{Axes, Rotate, TransformStep};
