@@ -249,6 +249,17 @@ impl Scene {
         Needs::of(&self.description, self.files())
     }
 
+    /// What moves in the scene, as it was written. A scene that was not read from a file is still.
+    pub fn survey(&self) -> animate::Survey {
+        let document = self.origin.as_ref().map(|origin| &origin.document);
+        document.map(|document| animate::survey(&document.tree, &document.sources)).unwrap_or_default()
+    }
+
+    /// Whether anything in the scene may change from frame to frame.
+    pub fn depends_on_time(&self) -> bool {
+        self.origin.as_ref().is_some_and(|origin| animate::depends_on_time(&origin.document.tree))
+    }
+
     /// Everything that decides the pixels, however many samples are taken.
     pub fn fingerprint(&self) -> Fingerprint {
         Fingerprint::of(&self.description, &self.moments().0, &self.files())

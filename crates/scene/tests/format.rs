@@ -52,7 +52,7 @@ fn the_reference_holds_true() {
     let text = reference();
     let scenes = text.split("```").skip(1).step_by(2).filter(|block| block.contains("\"version\""));
     let scenes: Vec<&str> = scenes.filter_map(|block| Some(block.split_once('\n')?.1)).collect();
-    assert_eq!(scenes.len(), 2);
+    assert_eq!(scenes.len(), 3);
     for text in scenes {
         let scene = scene(text);
         assert!(scene.check().list().is_empty(), "{}", scene.check());

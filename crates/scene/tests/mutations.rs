@@ -3,7 +3,7 @@
 use juggler_scene::{BuiltIn, Scene, built_in_scenes};
 
 /// Scenes that together use much of the format; the built-in ones are added.
-const SEEDS: [&str; 4] = [
+const SEEDS: [&str; 5] = [
     r##"{"version": 1, "title": "a", "animation": {"frames": 30, "frames_per_second": 25},
  "variables": {"phi": "2*pi*frame/frames", "s": "(1+cos(phi))/2"},
  "render": {"size": [64, 36], "samples": 2, "seed": 7, "integrator": {"classic": {"max_depth": 3}}, "filter": "tent"},
@@ -21,8 +21,21 @@ const SEEDS: [&str; 4] = [
   {"shape": {"mesh": {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}}},],}"##,
     r##"{"version": 1, "camera": {"orthographic": {}}, "lights": [{"spot": {"direction": [0, -1, 0]}}],
  "objects": [{"shape": {"cylinder": {"radius": 2}}, "transform": [{"matrix": [1,0,0,0,0,1,0,0,0,0,1,0]}]}]}"##,
+    r##"{"version": 1, "variables": {"v": [1, "frame", {"animate": {"keys": [[0, 1], [9, 2]]}}], "w": {"joint": {"from": "=v", "to": [0, 4, 0], "lengths": [3, 2.5], "plane_normal": [0, 0, 1]}}},
+ "objects": [{"shape": {"sphere": {"radius": "=v.x"}}, "transform": [{"translate": "=w"}, {"look_at": {"from": "=v", "to": [0, 9, 9]}}], "visible": "=frame >= 0"},
+  {"animate": {"keys": [[0, {"shape": "sphere"}], [2, {"shape": "cuboid", "visible": false}]], "interpolation": "step"}}]}"##,
     r##"{"version": 1, "include": ["missing.json"], "objects": [{"shape": {"mesh": {"file": "cow.ply"}}}]}"##,
 ];
+
+/// A scene that moves in all ways there are.
+const ANIMATED: &str = r##"{"version": 1, "animation": {"frames": 30, "frames_per_second": 25},
+ "paths": {"ring": {"points": [[1, 0, 0], [0, "=1+frames/30", 1], [-1, 0, 0]], "closed": true}, "line": {"points": [[0, 0, 0], [0, 5, 0]]}},
+ "variables": {"bird": {"along": {"path": "ring", "at": "=seconds / 2"}}, "t": "seconds * 2"},
+ "background": {"animate": {"keys": [[0, "#102030"], [1, "#ffffff", "in_out"], [2, [0, 0, 1]]], "repeat": "ping_pong"}},
+ "objects": [{"shape": "sphere", "transform": [{"translate": "=bird"}]},
+  {"shape": "cuboid", "transform": [{"orient": {"animate": {"keys": [[0, [0, 0, 0, 1]], [2, {"axis": [0, 1, 0], "degrees": 90}]], "interpolation": "slerp", "repeat": "loop"}}}]},
+  {"shape": {"sphere": {"radius": {"animate": {"keys": [[0, 1, [0.2, 0, 0.5, 1]], [1, 2, "step"], [3, 1], [4, 1.5]], "interpolation": "smooth", "at": "=t", "ease": "out"}}}},
+   "transform": [{"translate": {"along": {"path": "line", "at": {"animate": {"keys": [[0, 0], [1, 1]]}}}}}]}]}"##;
 
 /// Numbers and words at the edge of what is possible.
 const EXTREMES: [&str; 24] = [
@@ -135,6 +148,24 @@ fn outcome(text: String) -> Result<(), String> {
 fn is_small(scene: &BuiltIn) -> bool {
     let objects = || Some(Scene::built_in(scene.name).ok()?.compile().ok()?.world.geometry().shapes);
     scene.name == "juggler" || scene.json.len() < 4000 && objects().is_some_and(|objects| objects < 50)
+}
+
+/// The same of scenes that move alone.
+#[test]
+fn no_broken_animation_breaks_the_program() {
+    assert_eq!([ANIMATED, SEEDS[3]].map(|seed| outcome(seed.to_owned())), [Ok(()), Ok(())]);
+    let seeds = [tokens(ANIMATED), tokens(SEEDS[3])];
+    let mut numbers = Numbers(1986);
+    let (mut rendered, mut refused) = (0, 0);
+    for round in 0..3_000 {
+        let text = mutated(&mut numbers, &seeds);
+        match std::panic::catch_unwind(|| outcome(text.clone())) {
+            Ok(Ok(())) => rendered += 1,
+            Ok(Err(_)) => refused += 1,
+            Err(_) => panic!("round {round} panics: {text}"),
+        }
+    }
+    assert!(rendered > 100 && refused > 1000, "{rendered} rendered, {refused} refused");
 }
 
 #[test]

@@ -143,6 +143,17 @@ wrong! {
     material_of_a_number: object(r#"{"shape": "sphere", "material": 7}"#);
     number_for_an_object: r#"{"version": 1, "objects": [5]}"#;
     light_that_gives_none: with(r#""lights": [{"point": {"intensity": 0}}]"#);
+    track_without_keys: object(r#"{"shape": {"sphere": {"radius": {"animate": {"kyes": [[0, 1]]}}}}}"#);
+    track_with_keys_out_of_order: object(r#"{"shape": {"sphere": {"radius": {"animate": {"keys": [[0, 1], [2, 3], [1, 2]]}}}}}"#);
+    track_of_words: object(r#"{"shape": {"sphere": {"radius": {"animate": {"keys": [[0, "small"], [1, "large"]]}}}}}"#);
+    track_of_unlike_values: object(r#"{"shape": "sphere", "transform": [{"translate": {"animate": {"keys": [[0, [0, 1, 0]], [1, [1, 2]]]}}}]}"#);
+    track_in_an_unknown_way: object(r#"{"shape": {"sphere": {"radius": {"animate": {"keys": [[0, 1], [1, 2]], "interpolation": "liner", "repeat": "bounce"}}}}}"#);
+    track_beside_others: object(r#"{"shape": {"sphere": {"radius": {"animate": {"keys": [[0, 1]]}, "ease": "in"}}}}"#);
+    misspelt_value_form: object(r#"{"shape": {"sphere": {"radius": {"anmiate": {"keys": [[0, 1]]}}}}}"#);
+    along_an_unknown_path: "{\"version\": 1, \"paths\": {\"flight\": {\"points\": [[0, 0, 0], [1, 2, 3]]}},\n \"objects\": [{\"shape\": \"sphere\", \"transform\": [{\"translate\": {\"along\": {\"path\": \"fligth\", \"at\": \"=seconds\"}}}]}]}";
+    joint_out_of_reach: object(r#"{"shape": "sphere", "transform": [{"translate": {"joint": {"from": [0, 0, 0], "to": [0, 9, 0], "lengths": [2, 3], "plane_normal": [0, 0, 1]}}}]}"#);
+    vector_as_a_number: "{\"version\": 1, \"variables\": {\"ball\": [1, 2, 3]},\n \"objects\": [{\"shape\": {\"sphere\": {\"radius\": \"=2 * ball\"}}}]}";
+    rotation_of_three: object(r#"{"shape": "sphere", "transform": [{"orient": {"animate": {"keys": [[0, [0, 1, 0]]], "interpolation": "slerp"}}}]}"#);
     unknown_word: with(r#""materials": {"a": {"phong": {"highlight": "phog"}}}"#);
 }
 

@@ -1,6 +1,7 @@
 //! `juggler info`: what is in a scene or a mesh, and what a picture or a part of one says about itself.
 
 mod mesh;
+mod motion;
 mod part;
 
 use crate::console;
@@ -109,8 +110,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("cameras", cameras.join(", "));
     row("bounds", bounds_in_words(&compiled.world.bounds()));
     row("memory", memory_in_words(geometry.geometry_bytes, geometry.bvh_bytes));
-    let animation = &description.animation;
-    row("animation", length(animation.frames, animation.frames_per_second));
+    motion::rows(&description.animation, &scene.survey()).iter().for_each(|(key, value)| row(key, value.clone()));
     lines.join("\n")
 }
 
@@ -122,15 +122,6 @@ fn triangles_in_words(geometry: &Geometry) -> String {
     } else {
         format!("{triangles}, {unique_triangles} of them stored")
     }
-}
-
-/// `30 frames, 1.25 s`.
-fn length(frames: u32, frames_per_second: f64) -> String {
-    if frames <= 1 {
-        return "none".into();
-    }
-    let seconds = (f64::from(frames) / frames_per_second * 1000.0).round() / 1000.0;
-    format!("{}, {seconds} s", counted(frames.into(), "frame"))
 }
 
 fn memory_in_words(geometry: usize, bvh: usize) -> String {
@@ -172,7 +163,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         "bounds": corners(&compiled.world.bounds()),
         "memory": {"geometry_bytes": geometry.geometry_bytes, "bvh_bytes": geometry.bvh_bytes},
-        "animation": {"frames": description.animation.frames, "frames_per_second": description.animation.frames_per_second},
+        "animation": motion::json(&description.animation, &scene.survey()),
     })
     .to_string()
 }

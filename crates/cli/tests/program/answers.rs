@@ -5,6 +5,10 @@ use std::fs;
 use std::io::Write;
 use std::process::Stdio;
 
+/// What a scene begins with whose background moves.
+const MOVING: &str = r##""version": 1,
+    "background": {"animate": {"keys": [[0, "#203040"], [2, "#ffffff"]], "repeat": "loop"}},"##;
+
 #[test]
 fn help_tells_everything() {
     let folder = Folder::new();
@@ -64,6 +68,17 @@ fn what_is_in_a_scene() {
     let json: serde_json::Value = serde_json::from_str(&folder.good("info ball.json --json").stdout).unwrap();
     assert_eq!((&json["geometry"]["shapes"], &json["animation"]["frames"]), (&2.into(), &4.into()));
     assert_eq!(json["cameras"], serde_json::json!(["main", "top"]));
+    fs::write(
+        folder.path("film.json"),
+        SCENE.replace("\"version\": 1,", MOVING).replace("\"background\": [0.2, 0.3, 0.5],", ""),
+    )
+    .unwrap();
+    let words = folder.good("info film.json").stdout;
+    let said =
+        ["4 frames, 2 s, 2 frames a second", "tracks       1\n", "background: animate, 2 keys, 0 to 2 s, linear, loop"];
+    assert!(said.iter().all(|said| words.contains(said)), "{words}");
+    let json: serde_json::Value = serde_json::from_str(&folder.good("info film.json --json").stdout).unwrap();
+    assert_eq!((&json["animation"]["tracks"], &json["animation"]["seconds"]), (&1.into(), &2.0.into()));
 }
 
 #[test]

@@ -94,6 +94,9 @@ impl<'s> Counter<'s> {
     }
 
     fn object(&mut self, object: &'s Object, path: &Path, index: usize) -> u64 {
+        if !object.is_visible() {
+            return 0;
+        }
         let mut count = shapes(object);
         if let Some(group) = &object.group {
             count = count.saturating_add(self.group(&group.0, &path.index(index).key("group")));
@@ -152,7 +155,7 @@ pub fn shapes(object: &Object) -> u64 {
 
 /// Calls `visit` with every group that the objects place.
 fn each_group<'s>(objects: &'s [Object], visit: &mut impl FnMut(&'s str)) {
-    for object in objects {
+    for object in objects.iter().filter(|object| object.is_visible()) {
         if let Some(group) = &object.group {
             visit(&group.0);
         }
@@ -198,7 +201,7 @@ fn count_stored(scene: &Description, counts: &mut Counts<'_>) -> u64 {
 /// Objects that are stored where `objects` stand, shared groups counted as one each, and the levels on the longest
 /// way down.
 fn store(objects: &[Object], counts: &Counts<'_>) -> (u64, u32) {
-    objects.iter().fold((0_u64, 1), |(sum, depth), object| {
+    objects.iter().filter(|object| object.is_visible()).fold((0_u64, 1), |(sum, depth), object| {
         let inner = object.objects.as_deref().unwrap_or_default();
         let (mut stored, mut below) = store(inner, counts);
         stored = stored.saturating_add(shapes(object));

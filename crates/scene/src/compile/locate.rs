@@ -34,7 +34,7 @@ struct Search<'s> {
 
 impl Search<'_> {
     fn among(&self, objects: &[Object], at: &Path, mut number: u64, inherited: String) -> Option<Part> {
-        for (i, object) in objects.iter().enumerate() {
+        for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let count = self.count(object);
             if number < count {
                 return self.within(object, &at.index(i), number, inherited);
@@ -45,6 +45,9 @@ impl Search<'_> {
     }
 
     fn count(&self, object: &Object) -> u64 {
+        if !object.is_visible() {
+            return 0;
+        }
         let group = object.group.as_ref().and_then(|group| self.counts.get(group.0.as_str()));
         let inner = object.objects.iter().flatten().map(|object| self.count(object));
         count::shapes(object) + group.map_or(0, count::Count::objects) + inner.sum::<u64>()

@@ -42,7 +42,7 @@ impl Needs {
     }
 
     fn add(&mut self, objects: &[Object], files: Files<'_>, path: &Trail<'_>) {
-        for (i, object) in objects.iter().enumerate() {
+        for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let path = path.index(i);
             if let Some(MaterialRef::Inline(material)) = &object.material {
                 self.material(material);

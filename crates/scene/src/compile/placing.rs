@@ -66,6 +66,7 @@ struct Preparing<'m> {
 }
 
 impl Preparing<'_> {
+<<<<<<< HEAD
     /// `moments` are the same objects at other times; where there are not as many, nothing moves.
     fn objects<'s>(&mut self, objects: &'s [Object], moments: &[&[Object]], path: &Trail<'_>) -> Vec<Prepared<'s>> {
         let moments = if moments.iter().all(|at| at.len() == objects.len()) { moments } else { &[] };
@@ -75,6 +76,11 @@ impl Preparing<'_> {
             self.object(object, at, &path.index(i))
         };
         objects.iter().enumerate().filter_map(object).collect()
+=======
+    fn objects<'s>(&mut self, objects: &'s [Object], path: &Trail<'_>) -> Vec<Prepared<'s>> {
+        let visible = objects.iter().enumerate().filter(|(_, object)| object.is_visible());
+        visible.filter_map(|(i, object)| self.object(object, &path.index(i))).collect()
+>>>>>>> tracks
     }
 
     fn object<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Prepared<'s>> {

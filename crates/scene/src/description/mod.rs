@@ -13,16 +13,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 mod animation;
+mod bones;
 mod object;
 mod render;
 mod spheres;
 mod transform;
 
-pub use animation::{Animation, Variable};
-pub use object::{GroupName, Object};
+pub use animation::{Animation, Component, Course, Variable};
+pub use bones::Bones;
+pub(crate) use bones::positive_items;
+pub use object::{GroupName, Object, Visible};
 pub use render::{CameraName, Render};
 pub use spheres::{Bead, Chain, ControlSphere, Limb};
-pub use transform::{Axes, Rotate, TransformStep};
+pub use transform::{Axes, LookAt, Rotate, TransformStep};
 
 /// A scene: everything that decides a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,16 +40,19 @@ pub struct Description {
     /// What is to be seen, in a sentence.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
-    /// Other scene files, relative to this one, whose textures, materials, groups, cameras, variables, lights and
-    /// objects belong to this scene too. Each file comes in once; the same name twice is an error.
+    /// Other scene files, relative to this one, whose textures, materials, groups, cameras, variables, paths, lights
+    /// and objects belong to this scene too. Each file comes in once; the same name twice is an error.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub include: Vec<String>,
     /// Length and pace of an animation.
     #[serde(default, skip_serializing_if = "Animation::is_still")]
     pub animation: Animation,
-    /// Named numbers for `"=expressions"`, in order: each may use those before it.
+    /// Named numbers and vectors for `"=expressions"`, in order: each may use those before it.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub variables: IndexMap<String, Variable>,
+    /// Curves by name, for the value form `along`. A scene that is written at one frame has none any more.
+    #[serde(default, skip_serializing)]
+    pub paths: IndexMap<String, Course>,
     /// How the picture is made.
     #[serde(default)]
     pub render: Render,
@@ -89,6 +95,7 @@ impl Default for Description {
             include: Vec::new(),
             animation: Animation::default(),
             variables: IndexMap::new(),
+            paths: IndexMap::new(),
             render: Render::default(),
             tone: Tone::default(),
             camera: None,

@@ -47,6 +47,52 @@ pub struct Object {
     /// that holds it, or else a plain grey.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialRef>,
+    /// Whether it is there, with all that it holds: yes, unless this is `false` or 0.
+    #[serde(skip_serializing_if = "Visible::is_default")]
+    pub visible: Visible,
+}
+
+/// Whether something is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(from = "Said", into = "bool")]
+pub struct Visible(pub bool);
+
+/// How it is written: true, or any number but 0, as expressions give them.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Visible")]
+enum Said {
+    /// Yes or no.
+    Flag(bool),
+    /// Not when it is 0.
+    Number(f64),
+}
+
+impl Default for Visible {
+    fn default() -> Self {
+        Self(true)
+    }
+}
+
+impl From<Said> for Visible {
+    fn from(said: Said) -> Self {
+        Self(match said {
+            Said::Flag(flag) => flag,
+            Said::Number(number) => number != 0.0,
+        })
+    }
+}
+
+impl From<Visible> for bool {
+    fn from(visible: Visible) -> Self {
+        visible.0
+    }
+}
+
+impl Visible {
+    fn is_default(&self) -> bool {
+        self.0
+    }
 }
 
 /// Name of one of the scene's groups.
@@ -54,6 +100,11 @@ pub struct Object {
 pub struct GroupName(pub String);
 
 impl Object {
+    /// Whether it is there at all, with what it holds: else it is neither placed nor counted.
+    pub fn is_visible(&self) -> bool {
+        self.visible.0
+    }
+
     /// One shape around the origin.
     pub fn new(shape: impl Into<AnyShape>) -> Self {
         Self { shape: Some(shape.into()), ..Self::default() }
@@ -108,6 +159,13 @@ impl Object {
     #[must_use]
     pub fn transformed(mut self, step: TransformStep) -> Self {
         self.transform.push(step);
+        self
+    }
+
+    /// Shows it or leaves it out.
+    #[must_use]
+    pub fn visible(mut self, visible: bool) -> Self {
+        self.visible = Visible(visible);
         self
     }
 

@@ -4,9 +4,9 @@
 //! {"chain": {"from": {"center": [0, 0, 0], "radius": 16}, "to": {"center": [0, 32, 0], "radius": 20}, "count": 8}}
 //! ```
 
-use super::Misplaced;
+use super::{Bones, Misplaced, positive_items};
 use juggler_math::{DVec3, Vec3};
-use schemars::{JsonSchema, Schema};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A sphere at one end of a chain.
@@ -33,13 +33,6 @@ pub struct Chain {
     /// Whether `to` is one of them; without it the row stops one step before, where the next chain begins.
     #[serde(default = "yes")]
     pub include_last: bool,
-}
-
-/// Every number of an array must be greater than 0.
-fn positive_items(schema: &mut Schema) {
-    if let Some(items) = schema.get_mut("items").and_then(|items| items.as_object_mut()) {
-        items.insert("exclusiveMinimum".into(), 0.into());
-    }
 }
 
 fn yes() -> bool {
@@ -118,34 +111,10 @@ impl Limb {
         Ok(beads)
     }
 
-    /// Where the bones meet: with D = |to − from|, V the unit vector that way and U = V × normal, it is
-    /// from + x U + y V for y = (A² − B² + D²) / 2D and x = √(A² − y²) (Birken 2010, step 16). U is shorter than 1
-    /// when the normal is not perpendicular to V, and made 1 long to keep the lengths.
+    /// Where the bones meet.
     fn joint(&self) -> Result<DVec3, Misplaced> {
-        let whole = |message: String| Misplaced::new("", message);
-        let (from, to) = (self.from.as_dvec3(), self.to.as_dvec3());
-        let [a, b] = self.lengths.map(f64::from);
-        let distance = (to - from).length();
-        if distance.is_nan() || distance <= 0.0 {
-            return Err(Misplaced::new("to", "`from` and `to` must not be the same point"));
-        }
-        if distance > (a + b) * (1.0 + 1e-6) {
-            return Err(whole(format!("out of reach: the ends are {distance} apart, the bones only {} long", a + b)));
-        }
-        if distance < (a - b).abs() * (1.0 - 1e-6) {
-            return Err(whole(format!(
-                "the ends are only {distance} apart, bones of {a} and {b} cannot bend that far"
-            )));
-        }
-        let v = (to - from) / distance;
-        let normal = self.plane_normal.as_dvec3().try_normalize();
-        let u = normal.map(|normal| v.cross(normal)).filter(|u| u.length_squared() > 1e-12);
-        let wrong = || Misplaced::new("plane_normal", "`plane_normal` must not be zero or point along the limb");
-        let u = u.ok_or_else(wrong)?;
-        let u = if self.keep_lengths { u.normalize() } else { u };
-        let y = (a * a - b * b + distance * distance) / (2.0 * distance);
-        let x = (a * a - y * y).max(0.0).sqrt();
-        Ok(from + u * x + v * y)
+        let [from, to, plane_normal] = [self.from, self.to, self.plane_normal].map(|v| v.as_dvec3());
+        Bones { from, to, lengths: self.lengths.map(f64::from), plane_normal, keep_lengths: self.keep_lengths }.joint()
     }
 }
 

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Named things: one of each name. Variables of included files come first, as later ones may use them.
-const MAPS: [&str; 5] = ["variables", "cameras", "textures", "materials", "groups"];
+const MAPS: [&str; 6] = ["variables", "paths", "cameras", "textures", "materials", "groups"];
 /// Things in order: those of included files come first.
 const LISTS: [&str; 2] = ["lights", "objects"];
 /// Most files of one scene.

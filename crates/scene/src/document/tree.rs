@@ -39,6 +39,8 @@ pub enum Value {
     Array(Arc<Vec<Node>>),
     /// Named values in the order of the file; shared likewise.
     Object(Arc<Members>),
+    /// A mistake that has been reported: checks pass over it.
+    Wrong,
 }
 
 /// The entries of an object in the order of the file.
@@ -88,6 +90,7 @@ impl Node {
             Value::String(_) => "a string",
             Value::Array(_) => "an array",
             Value::Object(_) => "an object",
+            Value::Wrong => "a mistake",
         }
     }
 
@@ -133,7 +136,7 @@ impl Node {
     /// The plain JSON of it.
     pub fn to_json(&self) -> serde_json::Value {
         match &self.value {
-            Value::Null => serde_json::Value::Null,
+            Value::Null | Value::Wrong => serde_json::Value::Null,
             Value::Bool(value) => (*value).into(),
             Value::Number(number) => serde_json::Value::Number(number.clone()),
             Value::String(text) => text.as_str().into(),

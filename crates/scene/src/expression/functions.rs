@@ -76,7 +76,7 @@ fn third(arguments: &[f64]) -> f64 {
 }
 
 /// What is left of `x` after whole multiples of `y`; has the sign of `y`.
-pub(super) fn modulo(x: f64, y: f64) -> f64 {
+pub(crate) fn modulo(x: f64, y: f64) -> f64 {
     x - y * (x / y).floor()
 }
 

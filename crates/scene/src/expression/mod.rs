@@ -12,7 +12,7 @@
 //! product    = sign (("*" | "/" | "%") sign)*
 //! sign       = "-" sign | power
 //! power      = atom ("^" sign)?                                          -2^2 = -4, 2^3^2 = 2^9
-//! atom       = number | name | name "(" comparison ("," comparison)* ")" | "(" comparison ")"
+//! atom       = number | name ("." component)? | name "(" comparison ("," comparison)* ")" | "(" comparison ")"
 //! ```
 
 use indexmap::IndexMap;
@@ -22,7 +22,9 @@ mod functions;
 mod reader;
 mod token;
 
+pub(crate) use functions::modulo;
 pub use functions::{FUNCTIONS, Function};
+use token::Token;
 
 /// Longest expression, in bytes.
 pub const MAX_LENGTH: usize = 4096;
@@ -30,7 +32,27 @@ pub const MAX_LENGTH: usize = 4096;
 pub const MAX_DEPTH: usize = 64;
 
 /// The names that an expression may use, with their values.
-pub type Names = IndexMap<String, f64>;
+pub type Names = IndexMap<String, Quantity>;
+
+/// What the components of a vector are called: `ball.x`.
+pub const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
+
+/// What a name stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// A number.
+    Number(f64),
+    /// One to four numbers, which expressions use one by one.
+    Vector(Vec<f64>),
+    /// It should have a value, but a mistake has been reported: what uses it has none either.
+    Unknown,
+}
+
+impl From<f64> for Quantity {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
 
 /// What is wrong with an expression, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -44,23 +66,43 @@ pub struct ExpressionError {
     pub help: Option<String>,
 }
 
-/// The value of an expression; always finite.
-pub fn evaluate(text: &str, names: &Names) -> Result<f64, ExpressionError> {
+/// The value of an expression; always finite. Nothing when it uses a name whose own value is not known.
+pub fn evaluate(text: &str, names: &Names) -> Result<Option<f64>, ExpressionError> {
     let whole = |message: String| ExpressionError { at: 0..text.len(), message, help: None };
     if text.len() > MAX_LENGTH {
         return Err(whole(format!("an expression has at most {MAX_LENGTH} characters, this one has {}", text.len())));
     }
-    let value = reader::Reader::new(text, names).whole()?;
+    let Some(value) = reader::Reader::new(text, names).whole()? else { return Ok(None) };
     if value.is_finite() {
-        return Ok(value);
+        return Ok(Some(value));
     }
     let message = if value.is_nan() {
         "the expression has no value (it is 0/0, the root of a negative number or the like)"
     } else {
         "the expression is infinite (a division by 0?)"
     };
-    let help = names.get("frame").map(|frame| format!("this happens at frame {frame}"));
+    let help = match names.get("frame") {
+        Some(Quantity::Number(frame)) => Some(format!("this happens at frame {frame}")),
+        _ => None,
+    };
     Err(ExpressionError { help, ..whole(message.into()) })
+}
+
+/// The names that an expression mentions, functions included and components left aside, as far as it can be read.
+pub fn names_in(text: &str) -> impl Iterator<Item = &str> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        loop {
+            match token::next(text, at).ok()? {
+                (Token::End, _) => return None,
+                (Token::Name(name), range) => {
+                    at = range.end;
+                    return Some(name.split('.').next().unwrap_or(name));
+                }
+                (_, range) => at = range.end,
+            }
+        }
+    })
 }
 
 #[cfg(test)]
@@ -68,12 +110,19 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> f64 {
-        let names = Names::from([("frame".to_owned(), 7.5), ("frames".to_owned(), 30.0), ("pi".to_owned(), 3.0)]);
-        evaluate(text, &names).unwrap_or_else(|e| panic!("{text}: {e}"))
+        evaluate(text, &names(7.5)).unwrap_or_else(|e| panic!("{text}: {e}")).unwrap()
+    }
+
+    fn names(frame: f64) -> Names {
+        let numbers = [("frame", frame), ("frames", 30.0), ("pi", 3.0)];
+        let mut names: Names = numbers.map(|(name, value)| (name.to_owned(), Quantity::Number(value))).into();
+        names.insert("ball".into(), Quantity::Vector(vec![1.0, 2.0, 3.0]));
+        names.insert("broken".into(), Quantity::Unknown);
+        names
     }
 
     fn error(text: &str) -> (Range<usize>, String, Option<String>) {
-        let e = evaluate(text, &Names::from([("frame".to_owned(), 1.0)])).expect_err(text);
+        let e = evaluate(text, &names(1.0)).expect_err(text);
         (e.at, e.message, e.help)
     }
 
@@ -140,6 +189,27 @@ mod tests {
         assert!(error("1 / 0").1.contains("infinite"));
         assert!(error("sqrt(-1)").1.contains("no value"));
         assert!(error("").1.contains("missing"));
+    }
+
+    #[test]
+    fn vectors_are_used_by_component() {
+        assert_eq!(value("ball.x + 10 * ball.y + 100*ball.z"), 321.0);
+        assert_eq!(error("2 * ball").1, "`ball` is 3 numbers: write ball.x, ball.y or ball.z");
+        assert_eq!(error("ball.w"), (0..6, "`ball` is 3 numbers: write ball.x, ball.y or ball.z".into(), None));
+        assert_eq!(error("1 + frame.x").1, "`frame` is one number, without components");
+        assert_eq!(error("bll.x").2, Some("did you mean `ball`?".into()));
+        assert!(error("ball.").1.contains("not a number") && error("ball.x.y").0 == (6..7));
+    }
+
+    #[test]
+    fn what_uses_a_mistake_is_no_other_mistake() {
+        assert_eq!(evaluate("1 / (broken.x - 1)", &names(0.0)), Ok(None));
+        assert!(evaluate("broken +", &names(0.0)).is_err());
+    }
+
+    #[test]
+    fn mentions_its_names() {
+        assert_eq!(names_in("sin(ball.x) + 2 * frame$pi").collect::<Vec<_>>(), ["sin", "ball", "frame"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Tokens → a value, by recursive descent with a bound on the depth.
 
 use super::token::{self, Token};
-use super::{ExpressionError, FUNCTIONS, Function, MAX_DEPTH, Names};
+use super::{COMPONENTS, ExpressionError, FUNCTIONS, Function, MAX_DEPTH, Names, Quantity};
 use crate::suggest::{closest, did_you_mean};
 use juggler_math::fun;
 use std::ops::Range;
@@ -16,6 +16,8 @@ pub struct Reader<'t> {
     /// Where the next token is looked for.
     at: usize,
     depth: usize,
+    /// Whether a name was used whose value is not known.
+    unknown: bool,
 }
 
 type Read<T> = Result<T, ExpressionError>;
@@ -23,14 +25,14 @@ type Read<T> = Result<T, ExpressionError>;
 impl<'t> Reader<'t> {
     /// At the start of `text`.
     pub fn new(text: &'t str, names: &'t Names) -> Self {
-        Self { text, names, at: 0, depth: 0 }
+        Self { text, names, at: 0, depth: 0, unknown: false }
     }
 
-    /// The value of the whole text.
-    pub fn whole(mut self) -> Read<f64> {
+    /// The value of the whole text; nothing when it uses a name whose own value is not known.
+    pub fn whole(mut self) -> Read<Option<f64>> {
         let value = self.comparison()?;
         match self.peek()? {
-            (Token::End, _) => Ok(value),
+            (Token::End, _) => Ok((!self.unknown).then_some(value)),
             (Token::Sign(")"), at) => fail(at, "this `)` closes nothing"),
             (Token::Sign("="), at) => fail(at, "`==` compares; a single `=` has no meaning here"),
             (_, at) => fail(at, "an operator is missing before this"),
@@ -150,10 +152,27 @@ impl<'t> Reader<'t> {
             };
             return call(function, &arguments, at);
         }
-        match (self.names.get(name), function) {
-            (Some(value), _) => Ok(*value),
+        let (base, component) = name.split_once('.').map_or((name, None), |(base, inner)| (base, Some(inner)));
+        match (self.names.get(base), function) {
+            (Some(quantity), _) => self.quantity(quantity, base, component, at),
             (None, Some(function)) => fail(at, format!("`{name}` is a function: write {}", function.usage)),
-            (None, None) => unknown(name, at, "nothing", self.names.keys().map(String::as_str)),
+            (None, None) => unknown(base, at, "nothing", self.names.keys().map(String::as_str)),
+        }
+    }
+
+    fn quantity(&mut self, quantity: &Quantity, base: &str, component: Option<&str>, at: Range<usize>) -> Read<f64> {
+        match (quantity, component) {
+            (Quantity::Unknown, _) => {
+                self.unknown = true;
+                Ok(1.0)
+            }
+            (Quantity::Number(value), None) => Ok(*value),
+            (Quantity::Number(_), Some(_)) => fail(at, format!("`{base}` is one number, without components")),
+            (Quantity::Vector(numbers), component) => {
+                let index = COMPONENTS.iter().position(|name| Some(*name) == component);
+                let value = index.and_then(|index| numbers.get(index)).copied();
+                value.map_or_else(|| fail(at, components(base, numbers.len())), Ok)
+            }
         }
     }
 
@@ -172,6 +191,16 @@ impl<'t> Reader<'t> {
                 return Ok(arguments);
             }
         }
+    }
+}
+
+/// How the numbers of a vector are written.
+fn components(base: &str, count: usize) -> String {
+    let mut written: Vec<String> = COMPONENTS.iter().take(count).map(|name| format!("{base}.{name}")).collect();
+    let last = written.pop().unwrap_or_default();
+    match written.as_slice() {
+        [] => format!("`{base}` is an array of 1 number: write {last}"),
+        others => format!("`{base}` is {count} numbers: write {} or {last}", others.join(", ")),
     }
 }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 pub enum Token<'t> {
     /// A number.
     Number(f64),
-    /// A name of a variable or function.
+    /// A name of a variable or function, or of a component of a variable: `ball.x`.
     Name(&'t str),
     /// An operator, parenthesis or comma.
     Sign(&'t str),
@@ -34,7 +34,7 @@ pub fn next(text: &str, from: usize) -> Result<(Token<'_>, Range<usize>), Expres
         };
     }
     if first.is_ascii_alphabetic() || first == '_' {
-        let length = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        let length = name_length(rest.as_bytes());
         return Ok((Token::Name(rest.get(..length).unwrap_or_default()), start..start + length));
     }
     match SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
@@ -44,6 +44,14 @@ pub fn next(text: &str, from: usize) -> Result<(Token<'_>, Range<usize>), Expres
             Err(ExpressionError { at, message: format!("`{first}` has no meaning in an expression"), help: None })
         }
     }
+}
+
+/// How many bytes a name takes: letters, digits and _, and once a point before a letter.
+fn name_length(bytes: &[u8]) -> usize {
+    let word = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_alphanumeric() || **b == b'_').count();
+    let base = word(0);
+    let component = bytes.get(base) == Some(&b'.') && bytes.get(base + 1).is_some_and(u8::is_ascii_alphabetic);
+    if component { base + 1 + word(base + 1) } else { base }
 }
 
 /// How many bytes a number takes: digits, a point, an exponent with its sign.

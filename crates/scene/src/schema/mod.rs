@@ -117,6 +117,20 @@ fn close(schema: &mut Map<String, Value>) {
 mod tests {
     use super::*;
 
+    /// A value form is known by its key alone.
+    #[test]
+    fn nothing_else_is_called_as_a_value_form() {
+        let schema = Schema::get();
+        let forms: Vec<&str> = crate::animate::forms().collect();
+        for (name, definition) in schema.definitions().filter(|(name, _)| *name != "ValueForm") {
+            let fields = definition.get("properties").and_then(Value::as_object).into_iter().flat_map(|p| p.keys());
+            let mut names = fields.map(String::as_str).chain(schema.kinds(definition).map(|(kind, _)| kind));
+            assert!(!names.any(|key| forms.contains(&key)), "{name}");
+        }
+        let family = schema.root().get("$defs").and_then(|d| d.get("ValueForm")).unwrap();
+        assert_eq!(schema.kinds(family).map(|(kind, _)| kind).collect::<Vec<_>>(), forms);
+    }
+
     #[test]
     fn families_list_their_kinds_and_every_object_is_closed() {
         let schema = Schema::get();

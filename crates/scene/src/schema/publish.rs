@@ -3,10 +3,27 @@
 use super::{Schema, each_schema};
 use serde_json::{Map, Value, json};
 
-/// Definitions whose numbers come before all expressions.
-const PLAIN: [&str; 2] = ["Animation", "Variable"];
+/// Definitions whose numbers come before all expressions, or that say themselves where these may stand.
+const PLAIN: [&str; 3] = ["Animation", "Variable", "Component"];
+/// Fields of a scene whose keys are names, and others where no value form may stand.
+const NAMED: [&str; 11] = [
+    "version",
+    "title",
+    "description",
+    "include",
+    "animation",
+    "variables",
+    "paths",
+    "cameras",
+    "textures",
+    "materials",
+    "groups",
+];
+/// How another definition refers to the family of value forms.
+const FORM: &str = "#/$defs/ValueForm";
 
-/// The published schema: numbers may be expressions, kinds may be names, null is left out.
+/// The published schema: numbers and arrays may be expressions, anything a value form, kinds may be names, null is left
+/// out.
 pub fn published() -> Value {
     let schema = Schema::get();
     let mut root = schema.root().clone();
@@ -18,6 +35,7 @@ pub fn published() -> Value {
         allow_names(schema, members);
         allow_expression(members);
     });
+    allow_forms(&mut root);
     definitions(&mut root, |definitions| {
         definitions.extend(plain);
         definitions.insert("Expression".into(), expression());
@@ -85,14 +103,81 @@ fn allow_names(schema: &Schema, members: &mut Map<String, Value>) {
     }
 }
 
-/// Where a number stands, an expression may stand.
+/// Where a number or an array of numbers stands, an expression may stand.
 fn allow_expression(members: &mut Map<String, Value>) {
-    if members.get("type").is_none_or(|t| t != "number" && t != "integer") {
+    let kind = members.get("type").and_then(Value::as_str);
+    // Innermost first: elements that are numbers have become choices.
+    let numbers = || members.get("items").is_some_and(|items| items.get("anyOf").is_some_and(has_expression));
+    if matches!(kind, Some("number" | "integer")) || kind == Some("array") && numbers() {
+        alternative(members, "#/$defs/Expression");
+    }
+}
+
+fn has_expression(branches: &Value) -> bool {
+    branches
+        .as_array()
+        .into_iter()
+        .flatten()
+        .any(|branch| branch.get("$ref").is_some_and(|to| to == "#/$defs/Expression"))
+}
+
+/// Lets a value form stand at every field, every element and every definition that is no part of one.
+fn allow_forms(root: &mut Value) {
+    let Some(root) = root.as_object_mut() else { return };
+    if let Some(Value::Object(fields)) = root.get_mut("properties") {
+        for (name, field) in fields {
+            inside(field);
+            if !NAMED.contains(&name.as_str()) {
+                allow_form(field);
+            }
+        }
+    }
+    let Some(Value::Object(definitions)) = root.get_mut("$defs") else { return };
+    for (name, definition) in definitions.iter_mut() {
+        inside(definition);
+        if name != "ValueForm" {
+            allow_form(definition);
+        }
+    }
+}
+
+/// The same for what a schema holds, not for itself.
+fn inside(schema: &mut Value) {
+    let Some(members) = schema.as_object_mut() else { return };
+    for (key, inner) in members.iter_mut() {
+        match (key.as_str(), inner) {
+            ("properties", Value::Object(fields)) => fields.values_mut().for_each(place),
+            ("oneOf" | "anyOf" | "prefixItems", Value::Array(list)) => list.iter_mut().for_each(inside),
+            ("items" | "additionalProperties", inner) => place(inner),
+            _ => {}
+        }
+    }
+}
+
+fn place(schema: &mut Value) {
+    inside(schema);
+    allow_form(schema);
+}
+
+fn allow_form(schema: &mut Value) {
+    // What a reference leads to allows it itself.
+    if let Some(members) = schema.as_object_mut().filter(|members| !members.contains_key("$ref")) {
+        alternative(members, FORM);
+    }
+}
+
+/// Makes a schema a choice between what it says and another definition.
+fn alternative(members: &mut Map<String, Value>, definition: &str) {
+    let reference = json!({"$ref": definition});
+    if let Some(Value::Array(branches)) = members.get_mut("anyOf") {
+        if !branches.contains(&reference) {
+            branches.push(reference);
+        }
         return;
     }
     let outside = ["description", "default"];
-    let (kept, number): (Map<String, Value>, Map<String, Value>) =
+    let (kept, own): (Map<String, Value>, Map<String, Value>) =
         std::mem::take(members).into_iter().partition(|(key, _)| outside.contains(&key.as_str()));
     *members = kept;
-    members.insert("anyOf".into(), json!([number, {"$ref": "#/$defs/Expression"}]));
+    members.insert("anyOf".into(), json!([own, reference]));
 }

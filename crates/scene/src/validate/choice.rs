@@ -42,7 +42,7 @@ fn fits(node: &Node, rule: &Rule) -> bool {
         Written::Number(_) => rule.allows_number(),
         Written::Array(_) => rule.types.array,
         Written::Object(_) => rule.types.object || !rule.kinds.is_empty(),
-        Written::String(_) => false,
+        Written::String(_) | Written::Wrong => false,
     }
 }
 

@@ -7,6 +7,7 @@ use crate::document::{Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::schema::Schema;
+use crate::suggest::did_you_mean;
 use rule::Rule;
 use serde_json::Value;
 
@@ -19,7 +20,7 @@ mod structure;
 mod words;
 
 pub use names::Family;
-pub(crate) use words::{noun as family_noun, plural};
+pub(crate) use words::{list, noun as family_noun, plural};
 
 /// Most mistakes that are collected; a file of numbers where objects should be makes one for each.
 const MAX_FINDINGS: usize = 200;
@@ -40,6 +41,13 @@ pub fn validate(tree: &Node) -> Validated {
     Validated { json, findings: walk.findings }
 }
 
+/// Checks a value that stands at `at` against the definition of this name.
+pub(crate) fn part(node: &Node, definition: &str, at: &Trail<'_>) -> Validated {
+    let mut walk = Walk { schema: Schema::get(), tree: node, findings: Vec::new() };
+    let json = Rule::named(definition).and_then(|rule| walk.value(node, at, rule));
+    Validated { json, findings: walk.findings }
+}
+
 struct Walk<'t> {
     schema: &'static Schema,
     /// The whole scene, where names are looked up.
@@ -51,6 +59,12 @@ impl Walk<'_> {
     /// The plain JSON of a value, or nothing when it is wrong and must be left out.
     fn value(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Value> {
         if self.findings.len() >= MAX_FINDINGS {
+            return None;
+        }
+        if rule.anything {
+            return Some(Value::Null);
+        }
+        if matches!(node.value, Written::Wrong) {
             return None;
         }
         if !rule.ways.is_empty() {
@@ -79,6 +93,11 @@ impl Walk<'_> {
             Written::String(text) if expected.contains("number") && crate::animate::looks_like_expression(text) => {
                 Finding::error(format!("expected {expected}, found a string"))
                     .help(format!("an expression begins with `=`: \"={text}\""))
+            }
+            Written::Object(members) => {
+                let form = members.keys().next().filter(|_| members.len() == 1);
+                let form = form.and_then(|key| crate::animate::nearest_form(key)).map(did_you_mean);
+                Finding::error(format!("expected {expected}, found {}", node.kind())).maybe_help(form)
             }
             _ => Finding::error(format!("expected {expected}, found {}", node.kind())),
         };

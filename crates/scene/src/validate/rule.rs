@@ -13,6 +13,8 @@ pub struct Rule {
     pub name: Option<&'static str>,
     /// The same as a schema, for messages.
     pub schema: &'static Value,
+    /// Whether everything may stand there, to be checked by others.
+    pub anything: bool,
     /// Several ways to write a value; empty when there is one.
     pub ways: Vec<Way>,
     /// The kinds of a family.
@@ -91,13 +93,26 @@ pub struct Numbers {
 static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| {
     let mut builder = Builder { schema: Schema::get(), rules: Vec::new(), known: BTreeMap::new() };
     builder.rule(Schema::get().root());
+    // Some definitions are only checked by themselves.
+    for (name, definition) in Schema::get().definitions() {
+        builder.add(Some(name), definition);
+    }
     builder.rules.into_iter().flatten().collect()
 });
+
+/// Those of definitions, by name.
+static NAMED: LazyLock<BTreeMap<&'static str, &'static Rule>> =
+    LazyLock::new(|| RULES.iter().filter_map(|rule| Some((rule.name?, rule))).collect());
 
 impl Rule {
     /// What a whole scene must be.
     pub fn root() -> Option<&'static Self> {
         RULES.first()
+    }
+
+    /// What a definition says.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        NAMED.get(name).copied()
     }
 
     /// Whether any number may stand there.
@@ -141,6 +156,10 @@ struct Builder {
 impl Builder {
     fn rule(&mut self, schema: &'static Value) -> RuleId {
         let (name, schema) = self.schema.follow(schema);
+        self.add(name, schema)
+    }
+
+    fn add(&mut self, name: Option<&'static str>, schema: &'static Value) -> RuleId {
         if let Some(known) = name.and_then(|name| self.known.get(name)) {
             return *known;
         }
@@ -162,6 +181,7 @@ impl Builder {
         Rule {
             name,
             schema,
+            anything: schema.as_bool() == Some(true),
             ways,
             kinds: family.kinds(schema).map(|(kind, content)| (kind, self.rule(content))).collect(),
             words: words::fixed(schema).collect(),

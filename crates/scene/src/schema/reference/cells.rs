@@ -60,7 +60,12 @@ impl Cells<'_> {
             "Color" => format!("[{}](#colours)", noun("colour")),
             "GroupName" => "name of a group".into(),
             "CameraName" => "name of a camera".into(),
-            "Variable" => format!("{} or [expressions](#expressions)", noun("number")),
+            "PathName" => "name of a [path](#path)".into(),
+            "Key" => if many { "`[time, value]` or `[time, value, ease]`" } else { "a key" }.into(),
+            "Visible" => "`true`, `false` or number".into(),
+            "Variable" => {
+                format!("{}, [expressions](#expressions), [value forms](#value-forms), arrays of them", noun("number"))
+            }
             name => format!("[{}](#{})", noun(&family_noun(name)), self.anchors.get(name)?),
         })
     }

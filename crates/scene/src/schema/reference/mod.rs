@@ -4,7 +4,7 @@ use super::{Schema, variants};
 use crate::compile::{MAX_EDGE, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
 use crate::expression::FUNCTIONS;
 use crate::validate::{family_noun, plural};
-use crate::{document, expression};
+use crate::{animate, document, expression};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -15,6 +15,8 @@ use cells::Cells;
 
 /// What is written by hand.
 const INTRODUCTION: &str = include_str!("introduction.md");
+/// The part of it about what moves.
+const ANIMATION: &str = include_str!("animation.md");
 
 /// The reference of the scene format, in Markdown.
 pub fn reference() -> String {
@@ -22,7 +24,10 @@ pub fn reference() -> String {
     let mut plan = Plan { schema, entries: Vec::new(), seen: BTreeSet::new() };
     plan.scene();
     let cells = Cells { schema, anchors: plan.anchors() };
-    let mut text = INTRODUCTION.replace("FUNCTIONS", &functions()).replace("LIMITS", limits().trim_end());
+    let mut text = INTRODUCTION
+        .replace("ANIMATION\n", ANIMATION)
+        .replace("FUNCTIONS", &functions())
+        .replace("LIMITS", limits().trim_end());
     text.push_str("\n## Contents\n\n");
     for entry in plan.entries.iter().filter(|entry| entry.level == 2) {
         let _ = writeln!(text, "- [{}](#{})", entry.heading, anchor(&entry.heading));
@@ -53,6 +58,9 @@ fn limits() -> String {
         ("nesting of materials", juggler_tracer::material::MAX_NESTING.to_string()),
         ("bytes of an expression", expression::MAX_LENGTH.to_string()),
         ("nesting of an expression", expression::MAX_DEPTH.to_string()),
+        ("keys of a track", animate::MAX_KEYS.to_string()),
+        ("points of a path", animate::MAX_POINTS.to_string()),
+        ("nesting of value forms", animate::MAX_NESTING.to_string()),
         ("edge of a picture, in pixels", MAX_EDGE.to_string()),
         ("pixels of a picture", MAX_PIXELS.to_string()),
         ("samples of a pixel", MAX_SAMPLES.to_string()),
