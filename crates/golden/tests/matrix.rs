@@ -21,6 +21,10 @@ const THREADS: [usize; 4] = [1, 2, 3, 8];
 const ORDERS: [Scheduler; 3] = [Scheduler::WorkStealing, Scheduler::RowQueue, Scheduler::StaticRows];
 const SHARDS: [u32; 3] = [1, 2, 5];
 
+/// Frames of scenes with the shutter open.
+const MOVING: [(&str, &str, f64, [f64; 2]); 2] =
+    [("juggler-in-motion", "juggler", 7.0, [0.0, 1.0]), ("juggler-from-before", "juggler", 12.5, [-0.25, 0.25])];
+
 /// How much is rendered.
 struct Extent {
     width: u32,
@@ -34,12 +38,24 @@ const NARROW: Extent =
 const WIDE: Extent = Extent { width: 96, samples: 52, scenes: |_| true };
 
 fn picture(name: &str, extent: &Extent, limit: Limit) -> Picture {
-    let scene = Scene::built_in(name).unwrap();
+    let moving = MOVING.iter().find(|moving| moving.0 == name);
+    let scene = match moving {
+        Some((_, name, frame, _)) => Scene::built_in(name).unwrap().at_frame(*frame).unwrap(),
+        None => Scene::built_in(name).unwrap(),
+    };
+    let shutter = moving.map(|moving| moving.3);
     let [width, height] = scene.description.render.size.map(f64::from);
     let height = (f64::from(extent.width) * height / width).round().max(1.0) as u32;
-    let settings =
-        Settings { size: Some([extent.width, height]), samples: Some(extent.samples), limit, ..Settings::default() };
-    Picture::new(&scene, &settings).unwrap()
+    let settings = Settings {
+        size: Some([extent.width, height]),
+        samples: Some(extent.samples),
+        shutter,
+        limit,
+        ..Settings::default()
+    };
+    let picture = Picture::new(&scene, &settings).unwrap();
+    assert_eq!(picture.world().moves(), moving.is_some(), "{name}");
+    picture
 }
 
 /// Row by row.
@@ -89,8 +105,8 @@ fn hash(name: &str, extent: &Extent) -> String {
 fn one_scene_one_hash() {
     let wide = std::env::var_os("JUGGLER_MATRIX").is_some_and(|value| value == "wide");
     let extent = if wide { &WIDE } else { &NARROW };
-    let names: Vec<&str> =
-        built_in_scenes().iter().map(|scene| scene.name).filter(|name| (extent.scenes)(name)).collect();
+    let still = built_in_scenes().iter().map(|scene| scene.name).filter(|name| (extent.scenes)(name));
+    let names: Vec<&str> = still.chain(MOVING.iter().map(|moving| moving.0)).collect();
     assert!(names.len() >= 20);
     let found: String = names.iter().map(|name| format!("{name} {}\n", hash(name, extent))).collect();
     if wide {

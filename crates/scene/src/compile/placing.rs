@@ -66,7 +66,6 @@ struct Preparing<'m> {
 }
 
 impl Preparing<'_> {
-<<<<<<< HEAD
     /// `moments` are the same objects at other times; where there are not as many, nothing moves.
     fn objects<'s>(&mut self, objects: &'s [Object], moments: &[&[Object]], path: &Trail<'_>) -> Vec<Prepared<'s>> {
         let moments = if moments.iter().all(|at| at.len() == objects.len()) { moments } else { &[] };
@@ -75,12 +74,8 @@ impl Preparing<'_> {
             let at = if at.iter().all(|other| *other == object) { &[] } else { at.as_slice() };
             self.object(object, at, &path.index(i))
         };
-        objects.iter().enumerate().filter_map(object).collect()
-=======
-    fn objects<'s>(&mut self, objects: &'s [Object], path: &Trail<'_>) -> Vec<Prepared<'s>> {
         let visible = objects.iter().enumerate().filter(|(_, object)| object.is_visible());
-        visible.filter_map(|(i, object)| self.object(object, &path.index(i))).collect()
->>>>>>> tracks
+        visible.filter_map(object).collect()
     }
 
     fn object<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Prepared<'s>> {

@@ -54,7 +54,7 @@ fn length(animation: &Animation) -> String {
 fn told(track: &Track) -> String {
     let mut told = vec![track.kind.clone()];
     told.extend(track.along.clone());
-    told.extend(track.keys.map(|keys| counted(keys as u64, "key")));
+    told.extend(track.keys.map(|keys| counted(keys as u128, "key")));
     told.extend(track.span.map(|[first, last]| format!("{} to {} s", rounded(first), rounded(last))));
     told.extend(track.interpolation.map(|interpolation| word(&interpolation)));
     told.extend(track.repeat.map(|repeat| word(&repeat)));
