@@ -134,10 +134,13 @@ pub(crate) fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<Pat
 
 fn collect(objects: &[Object], path: &Path, files: &Files<'_>, found: &mut BTreeSet<PathBuf>) {
     for (i, object) in objects.iter().enumerate() {
-        if let Some(AnyShape::Mesh(mesh)) = &object.shape
-            && let Some(file) = &mesh.file
-        {
-            found.insert(files.locate(&path.index(i).key("shape").key("mesh").key("file"), file));
+        if let Some(AnyShape::Mesh(mesh)) = &object.shape {
+            let path = path.index(i).key("shape").key("mesh");
+            found.extend(mesh.file.iter().map(|file| files.locate(&path.key("file"), file)));
+            for (i, morph) in mesh.morphs.iter().enumerate() {
+                let path = path.key("morphs").index(i).key("file");
+                found.extend(morph.file.iter().map(|file| files.locate(&path, file)));
+            }
         }
         if let Some(objects) = &object.objects {
             collect(objects, &path.index(i).key("objects"), files, found);

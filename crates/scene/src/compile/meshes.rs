@@ -5,7 +5,8 @@ use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
-use juggler_tracer::shape::{Mesh, MeshData, Shape};
+use juggler_math::Vec3;
+use juggler_tracer::shape::{InvalidShape, Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -128,8 +129,62 @@ impl Files<'_> {
         }
     }
 
-    /// The mesh that a description at `path` means: its own arrays, or those of its file.
+    /// The mesh that a description at `path` means: its own arrays, or those of its file, blended with its morphs.
     pub fn mesh(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
+        if mesh.morphs.is_empty() {
+            self.base(mesh, path, findings)
+        } else {
+            Some(self.data(mesh, path, findings)?.into())
+        }
+    }
+
+    /// What a mesh is at `moments` while the shutter is open, where that is not always the same.
+    pub fn moving(
+        &self,
+        moments: &[&Mesh],
+        path: &Trail<'_>,
+        findings: &mut Vec<Finding>,
+    ) -> Option<Result<Mesh, InvalidShape>> {
+        let first = moments.first()?;
+        if moments.iter().all(|at| at == first) {
+            return None;
+        }
+        let mut keys = vec![self.data(first, path, findings)?];
+        for at in moments.iter().skip(1) {
+            // What is odd about a file has been said.
+            keys.push(self.data(at, path, &mut Vec::new())?);
+        }
+        Some(Mesh::moving(keys))
+    }
+
+    /// The arrays of a mesh, blended.
+    fn data(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<MeshData> {
+        let mut base = self.base(mesh, path, findings)?;
+        base.morphs.clone_from(&mesh.morphs);
+        let mut targets: Vec<Vec<Vec3>> = Vec::new();
+        for (i, morph) in mesh.morphs.iter().enumerate() {
+            let path = Path::from(path).key("morphs").index(i);
+            if morph.file.is_some() && !morph.positions.is_empty() {
+                let message = "a morph has either `file` or `positions`, not both";
+                findings.push(Finding::error(message).at(&path));
+                return None;
+            }
+            targets.push(match &morph.file {
+                None => morph.positions.clone(),
+                Some(file) => self.file(file, &path.key("file"), findings)?.data()?.positions.clone(),
+            });
+        }
+        match base.blended(&targets.iter().map(Vec::as_slice).collect::<Vec<_>>()) {
+            Ok(data) => Some(data),
+            Err(invalid) => {
+                findings.push(Finding::error(invalid.message).at(&Path::from(path).join(&invalid.field)));
+                None
+            }
+        }
+    }
+
+    /// The mesh without its morphs.
+    fn base(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
         let Some(file) = &mesh.file else {
             return Some(mesh.clone());
         };
@@ -138,13 +193,18 @@ impl Files<'_> {
             findings.push(Finding::error(invalid.message).at(&path));
             return None;
         }
-        match &self.library.get(&self.locate(&path, file)).mesh {
+        self.file(file, &path, findings)
+    }
+
+    /// The mesh of a file that is named at `path`.
+    fn file(&self, file: &str, path: &Path, findings: &mut Vec<Finding>) -> Option<Mesh> {
+        match &self.library.get(&self.locate(path, file)).mesh {
             Ok((mesh, warnings)) => {
-                findings.extend(warnings.iter().map(|warning| Finding::warning(warning.clone()).at(&path)));
+                findings.extend(warnings.iter().map(|warning| Finding::warning(warning.clone()).at(path)));
                 Some(mesh.clone())
             }
             Err(message) => {
-                findings.push(Finding::error(message.clone()).at(&path));
+                findings.push(Finding::error(message.clone()).at(path));
                 None
             }
         }

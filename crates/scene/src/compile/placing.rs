@@ -8,7 +8,7 @@ use crate::path::{Path, Trail};
 use crate::report::Finding;
 use juggler_math::{Motion, Transform, Vec3};
 use juggler_tracer::material::MaterialId;
-use juggler_tracer::shape::{AnyShape, Sphere};
+use juggler_tracer::shape::{AnyShape, Mesh, Sphere};
 use juggler_tracer::world::{self, Content as Placed, Level};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -89,8 +89,8 @@ impl Preparing<'_> {
     /// The one thing that an object is. That it is exactly one has been checked before.
     fn content<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Content<'s>> {
         if let Some(shape) = &object.shape {
-            let prepared = self.shape(shape, &path.key("shape"))?;
-            let others = at.iter().filter_map(|at| at.shape.as_ref());
+            let others: Vec<&AnyShape> = at.iter().filter_map(|at| at.shape.as_ref()).collect();
+            let prepared = self.shape(shape, &others, &path.key("shape"))?;
             Some(Content::Shapes(vec![(growth(shape, others), Arc::new(prepared))]))
         } else if let Some(group) = &object.group {
             Some(Content::Group(&group.0))
@@ -111,9 +111,11 @@ impl Preparing<'_> {
         }
     }
 
-    fn shape(&mut self, shape: &AnyShape, path: &Trail<'_>) -> Option<AnyShape> {
+    /// The shape ready to be placed. Of those that are not the same `at` other times, meshes move; the size of a sphere
+    /// is part of its motion.
+    fn shape(&mut self, shape: &AnyShape, at: &[&AnyShape], path: &Trail<'_>) -> Option<AnyShape> {
         let mut shape = match shape {
-            AnyShape::Mesh(mesh) => self.files.mesh(mesh, &path.key("mesh"), self.findings)?.into(),
+            AnyShape::Mesh(mesh) => self.mesh(mesh, at, &path.key("mesh"))?.into(),
             shape => shape.clone(),
         };
         match shape.prepare() {
@@ -125,12 +127,23 @@ impl Preparing<'_> {
         }
     }
 
+    fn mesh(&mut self, mesh: &Mesh, at: &[&AnyShape], path: &Trail<'_>) -> Option<Mesh> {
+        let moment = |at: &&'_ AnyShape| if let AnyShape::Mesh(mesh) = at { Some(mesh.clone()) } else { None };
+        let moments: Option<Vec<Mesh>> = at.iter().map(moment).collect();
+        let moments = moments.unwrap_or_default();
+        match self.files.moving(&moments.iter().collect::<Vec<_>>(), path, self.findings) {
+            None => self.files.mesh(mesh, path, self.findings),
+            Some(Ok(moving)) => Some(moving),
+            Some(Err(invalid)) => self.fail(invalid.message, &Path::from(path).join(&invalid.field)),
+        }
+    }
+
     /// Spheres in a row, `at` other times too; where there are not as many, none moves.
     fn beads<'s>(&mut self, beads: Vec<Bead>, at: Vec<Vec<Bead>>, path: &Trail<'_>) -> Content<'s> {
         let at = if at.iter().all(|other| other.len() == beads.len()) { at } else { Vec::new() };
         let mut shapes = Vec::new();
         for (i, Bead { center, radius }) in beads.into_iter().enumerate() {
-            let Some(shape) = self.shape(&Sphere { radius }.into(), path) else { continue };
+            let Some(shape) = self.shape(&Sphere { radius }.into(), &[], path) else { continue };
             let key = |bead: &Bead| {
                 let grown = Transform::scale(Vec3::splat(bead.radius / radius)).unwrap_or(Transform::IDENTITY);
                 grown.then(&Transform::translation(bead.center))
@@ -180,9 +193,9 @@ fn joined(steps: &[TransformStep]) -> Option<Transform> {
 }
 
 /// A sphere whose radius changes is one that is scaled.
-fn growth<'a>(shape: &AnyShape, others: impl Iterator<Item = &'a AnyShape>) -> Motion {
+fn growth(shape: &AnyShape, others: Vec<&AnyShape>) -> Motion {
     let AnyShape::Sphere(sphere) = shape else { return Transform::IDENTITY.into() };
-    let keys = others.map(|other| match other {
+    let keys = others.into_iter().map(|other| match other {
         AnyShape::Sphere(other) => Transform::scale(Vec3::splat(other.radius / sphere.radius)),
         _ => None,
     });

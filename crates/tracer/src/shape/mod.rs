@@ -21,7 +21,7 @@ mod sphere;
 mod triangle;
 mod tube;
 
-pub use mesh::MeshData;
+pub use mesh::{MeshData, Morph};
 pub use sphere::{cross_sphere, intersect_sphere, longitude_latitude, sphere_surface};
 
 /// What a ray found: 16 bytes, all that traversal carries.

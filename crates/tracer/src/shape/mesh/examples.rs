@@ -118,3 +118,62 @@ fn shading_normals_stay_on_the_front() {
     let missing = surface_below(&prepared(floor([Vec3::ZERO; 3])), 1.0, 1.0);
     assert_eq!(missing.shading_normal, Vec3::Y);
 }
+
+/// A globe that grows and wanders, at so many moments.
+fn wandering(moments: usize, bent: bool) -> Vec<MeshData> {
+    let at = |i: usize| {
+        let time = i as f32 / (moments - 1) as f32;
+        let height = if bent { 4.0 * time * (1.0 - time) } else { 0.0 };
+        let mut globe = globe(16, 8, 1.0 + time, Vec3::new(3.0 * time, height, 0.0));
+        globe.take_data()
+    };
+    (0..moments).map(at).collect()
+}
+
+#[test]
+fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
+    let mut random = juggler_math::testing::Random::new(51);
+    for (moments, bent, kept) in [(2, false, 2), (17, false, 2), (17, true, 17)] {
+        let keys = wandering(moments, bent);
+        let moving = Mesh::moving(keys.clone()).unwrap();
+        for _ in 0..40 {
+            let time = random.f32();
+            let (key, share) = juggler_math::motion::stretch(moments, time);
+            let between = |(a, b): (&Vec3, &Vec3)| juggler_math::motion::between(*a, *b, share);
+            let positions = keys[key].positions.iter().zip(&keys[key + 1].positions).map(between).collect();
+            let still = prepared(MeshData { positions, normals: Vec::new(), ..keys[key].clone() });
+            assert!(moving.bounds().union(still.bounds()).extent() == moving.bounds().extent());
+            for _ in 0..20 {
+                let ray = Ray { time, ..random.ray(6.0) };
+                let (a, b) = (moving.intersect(&ray), still.intersect(&ray));
+                assert_eq!(a.is_some(), moving.occludes(&ray));
+                if let (Some(a), Some(b)) = (a, b) {
+                    assert!((a.t - b.t).abs() < 2e-3 * b.t.max(1.0), "{kept} {a:?} {b:?}");
+                    let (a, b) = (moving.surface(&ray, &a), still.surface(&ray, &b));
+                    assert!(a.point.distance(b.point) < 1e-2 && a.normal.dot(b.normal) > 0.99);
+                }
+            }
+        }
+    }
+    let (small, large) = (globe(8, 6, 1.0, Vec3::ZERO).take_data(), globe(9, 6, 1.0, Vec3::ZERO).take_data());
+    assert!(Mesh::moving(vec![small, large]).is_err());
+}
+
+#[test]
+fn morphs_blend_corners_and_normals_follow() {
+    let base = globe(24, 12, 1.0, Vec3::ZERO);
+    let wide: Vec<Vec3> = base.positions.iter().map(|p| *p * Vec3::new(3.0, 1.0, 1.0)).collect();
+    let high: Vec<Vec3> = base.positions.iter().map(|p| *p + Vec3::Y).collect();
+    let morph = |positions: &Vec<Vec3>, weight| Morph { file: None, positions: positions.clone(), weight };
+    let mut mesh = Mesh { morphs: vec![morph(&wide, 0.5), morph(&high, 2.0)], ..base.clone() };
+    mesh.prepare().unwrap();
+    let bounds = mesh.bounds();
+    assert!(bounds.center().distance(Vec3::Y * 2.0) < 1e-5 && (bounds.extent().x - 4.0).abs() < 1e-5);
+    let ray = Ray::new(Vec3::new(1.0, 9.0, 0.3), Vec3::NEG_Y);
+    let surface = mesh.surface(&ray, &mesh.intersect(&ray).unwrap());
+    let p = surface.point - Vec3::Y * 2.0;
+    let exact = Vec3::new(p.x / 4.0, p.y, p.z).normalize();
+    assert!(surface.shading_normal.dot(exact) > 0.995, "{surface:?} {exact}");
+    let mut few = Mesh { morphs: vec![morph(&wide[1..].to_vec(), 0.5)], ..base };
+    assert_eq!(few.prepare().unwrap_err().field, "morphs[0]");
+}

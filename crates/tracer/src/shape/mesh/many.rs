@@ -12,9 +12,10 @@ impl Mesh {
         let Some(prepared) = &self.prepared else { return vec![None; rays.len()] };
         rays.iter_mut().for_each(|ray| *ray = within_floats(ray));
         let mut hits = vec![None; rays.len()];
-        match coherent {
-            true => prepared.bvh().closest_packet(rays, &mut hits),
-            false => prepared.bvh().closest_batch(rays, &mut hits),
+        match (prepared.bvh(), coherent) {
+            (Some(bvh), true) => bvh.closest_packet(rays, &mut hits),
+            (Some(bvh), false) => bvh.closest_batch(rays, &mut hits),
+            (None, _) => rays.iter().zip(&mut hits).for_each(|(ray, hit)| *hit = prepared.closest(ray)),
         }
         let hit = |hit: juggler_bvh::TriangleHit| Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index };
         hits.into_iter().map(|found| found.map(hit)).collect()
@@ -25,9 +26,10 @@ impl Mesh {
         let mut occluded = vec![false; rays.len()];
         let Some(prepared) = &self.prepared else { return occluded };
         rays.iter_mut().for_each(|ray| *ray = within_floats(ray));
-        match coherent {
-            true => prepared.bvh().any_packet(rays, &mut occluded),
-            false => prepared.bvh().any_batch(rays, &mut occluded),
+        match (prepared.bvh(), coherent) {
+            (Some(bvh), true) => bvh.any_packet(rays, &mut occluded),
+            (Some(bvh), false) => bvh.any_batch(rays, &mut occluded),
+            (None, _) => rays.iter().zip(&mut occluded).for_each(|(ray, found)| *found = prepared.any(ray)),
         }
         occluded
     }

@@ -25,10 +25,13 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 mod data;
+mod deforming;
 mod many;
+mod morph;
 mod prepared;
 
 pub use data::MeshData;
+pub use morph::Morph;
 
 /// A surface of triangles: from a file, or given here. Its front is where the corners of a triangle run
 /// counter-clockwise.
@@ -55,6 +58,9 @@ pub struct Mesh {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<[f32; 2]>")]
     pub uvs: Vec<Vec2>,
+    /// Other places that its corners go to, each as far as its weight says.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub morphs: Vec<Morph>,
     /// What [`Shape::prepare`] makes of the arrays above, which it empties: clones then share it.
     #[serde(skip)]
     prepared: Option<Arc<Prepared>>,
@@ -73,13 +79,39 @@ impl Mesh {
         Self { file: Some(file.into()), ..Self::default() }
     }
 
+    /// A mesh that is as these say at even times from opening to closing of the shutter; all with the same triangles.
+    /// Its area, and the places on it, are those of the first.
+    pub fn moving(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
+        let same = keys.windows(2).all(|pair| match pair {
+            [a, b] => a.triangles == b.triangles && a.positions.len() == b.positions.len(),
+            _ => true,
+        });
+        if !same {
+            return Err(check::invalid("triangles", "a mesh that moves keeps its triangles"));
+        }
+        Ok(Self { prepared: Some(Arc::new(Prepared::moving(keys)?)), ..Self::default() })
+    }
+
     /// Takes what the file holds. An error when the description has arrays of its own beside the file.
     pub fn load(&mut self, data: MeshData) -> Result<(), InvalidShape> {
         if !self.positions.is_empty() || !self.triangles.is_empty() {
             return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
         }
-        *self = Self { file: self.file.take(), ..data.into() };
+        *self = Self { file: self.file.take(), morphs: std::mem::take(&mut self.morphs), ..data.into() };
         Ok(())
+    }
+
+    /// The arrays, corners blended with `morphs`: for each of [`Mesh::morphs`] the places of all corners. An error
+    /// names the field at fault.
+    pub fn blended(&self, morphs: &[&[Vec3]]) -> Result<MeshData, InvalidShape> {
+        let mut data = match self.data() {
+            Some(data) => data.clone(),
+            None => self.clone().take_data(),
+        };
+        let targets: Vec<(&[Vec3], f32)> =
+            morphs.iter().zip(&self.morphs).map(|(positions, morph)| (*positions, morph.weight)).collect();
+        morph::blend(&mut data, &targets)?;
+        Ok(data)
     }
 
     /// The same mesh for another vector unit than the best of this machine.
@@ -123,7 +155,9 @@ impl Shape for Mesh {
                 None => check::invalid("triangles", "a mesh must have `file`, or `positions` and `triangles`"),
             });
         }
-        let data = self.take_data();
+        let mut data = self.take_data();
+        let morphs: Vec<(&[Vec3], f32)> = self.morphs.iter().map(|m| (m.positions.as_slice(), m.weight)).collect();
+        morph::blend(&mut data, &morphs)?;
         self.prepared = Some(Arc::new(Prepared::new(data)?));
         Ok(())
     }
@@ -133,16 +167,16 @@ impl Shape for Mesh {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let hit = self.prepared.as_ref()?.bvh().closest(&within_floats(ray))?;
+        let hit = self.prepared.as_ref()?.closest(&within_floats(ray))?;
         Some(Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index })
     }
 
     fn occludes(&self, ray: &Ray) -> bool {
-        self.prepared.as_ref().is_some_and(|p| p.bvh().any(&within_floats(ray)))
+        self.prepared.as_ref().is_some_and(|p| p.any(&within_floats(ray)))
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let facet = self.prepared.as_ref().and_then(|p| p.data().facet(hit.part as usize));
+        let facet = self.prepared.as_ref().and_then(|p| p.facet(hit.part as usize, ray.time));
         facet.map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |facet| facet.surface(ray, hit.uv))
     }
 
@@ -171,7 +205,7 @@ impl Shape for Mesh {
     }
 
     fn bvh_bytes(&self) -> usize {
-        self.prepared.as_ref().map_or(0, |p| p.bvh().bytes())
+        self.prepared.as_ref().map_or(0, |p| p.bvh_bytes())
     }
 }
 

@@ -1,23 +1,32 @@
 //! A checked mesh with its hierarchy, shared by all clones.
 
 use super::MeshData;
+use super::deforming::Deforming;
+use crate::shape::facet::Facet;
 use crate::shape::{InvalidShape, check::invalid};
-use juggler_bvh::{Quality, SimdLevel, TriangleBvh};
-use juggler_math::Aabb;
+use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
+use juggler_math::{Aabb, Ray};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::OnceLock;
 
 /// A checked mesh with its hierarchy.
 pub struct Prepared {
+    /// As it is when the shutter opens.
     data: MeshData,
-    bvh: TriangleBvh,
+    tree: Tree,
     bounds: Aabb,
     area: f64,
     /// Triangles without area.
     degenerate: usize,
     /// Running sums of the triangles' areas, made when the mesh is first sampled: few meshes are lamps.
     areas: OnceLock<Vec<f64>>,
+}
+
+/// The hierarchy over a mesh's triangles.
+enum Tree {
+    Still(TriangleBvh),
+    Moving(Deforming),
 }
 
 /// What all triangles are together.
@@ -57,21 +66,75 @@ impl Extent {
 impl Prepared {
     /// Checks the arrays and builds the hierarchy.
     pub fn new(data: MeshData) -> Result<Self, InvalidShape> {
-        data.check()?;
-        let Extent { bounds, area, degenerate } = Extent::of(&data);
-        if degenerate == data.triangles.len() {
-            let message = format!("`triangles` must have an area, but all {degenerate} are degenerate");
-            return Err(invalid("triangles", message));
-        }
+        let extent = checked(&data)?;
         let bvh = TriangleBvh::build(&data.positions, &data.triangles, Quality::Balanced)
             .map_err(|error| invalid("triangles", error.to_string()))?;
-        Ok(Self { data, bvh, bounds, area, degenerate, areas: OnceLock::new() })
+        Ok(Self::with(data, Tree::Still(bvh), extent))
+    }
+
+    /// The same for a mesh that is as these say at even times while the shutter is open, all with the same triangles.
+    pub fn moving(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
+        for key in &keys {
+            key.check()?;
+        }
+        let Some(data) = keys.first().cloned() else { return Self::new(MeshData::default()) };
+        let extent = checked(&data)?;
+        let tree = Deforming::new(keys)?;
+        let extent = Extent { bounds: tree.bounds(), ..extent };
+        Ok(Self::with(data, Tree::Moving(tree), extent))
+    }
+
+    fn with(data: MeshData, tree: Tree, Extent { bounds, area, degenerate }: Extent) -> Self {
+        Self { data, tree, bounds, area, degenerate, areas: OnceLock::new() }
     }
 
     /// The same for another vector unit.
     pub fn with_simd_level(&self, level: SimdLevel) -> Self {
-        let bvh = self.bvh.clone().with_simd_level(level);
-        Self { data: self.data.clone(), bvh, areas: OnceLock::new(), ..*self }
+        let tree = match &self.tree {
+            Tree::Still(bvh) => Tree::Still(bvh.clone().with_simd_level(level)),
+            Tree::Moving(tree) => Tree::Moving(tree.with_simd_level(level)),
+        };
+        Self { data: self.data.clone(), tree, areas: OnceLock::new(), ..*self }
+    }
+
+    /// The nearest hit at the ray's time.
+    pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
+        match &self.tree {
+            Tree::Still(bvh) => bvh.closest(ray),
+            Tree::Moving(tree) => tree.closest(ray),
+        }
+    }
+
+    /// Whether anything is hit at the ray's time.
+    pub fn any(&self, ray: &Ray) -> bool {
+        match &self.tree {
+            Tree::Still(bvh) => bvh.any(ray),
+            Tree::Moving(tree) => tree.any(ray),
+        }
+    }
+
+    /// A triangle as it is at a time.
+    pub fn facet(&self, triangle: usize, time: f32) -> Option<Facet> {
+        match &self.tree {
+            Tree::Still(_) => self.data.facet(triangle),
+            Tree::Moving(tree) => tree.facet(triangle, time),
+        }
+    }
+
+    /// The hierarchy, of a mesh that keeps its shape.
+    pub fn bvh(&self) -> Option<&TriangleBvh> {
+        match &self.tree {
+            Tree::Still(bvh) => Some(bvh),
+            Tree::Moving(_) => None,
+        }
+    }
+
+    /// Bytes of the hierarchy.
+    pub fn bvh_bytes(&self) -> usize {
+        match &self.tree {
+            Tree::Still(bvh) => bvh.bytes(),
+            Tree::Moving(tree) => tree.bvh_bytes(),
+        }
     }
 
     /// The arrays.
@@ -79,12 +142,7 @@ impl Prepared {
         &self.data
     }
 
-    /// The hierarchy.
-    pub fn bvh(&self) -> &TriangleBvh {
-        &self.bvh
-    }
-
-    /// A box around every triangle that has an area.
+    /// A box around every triangle that has an area, wherever it comes.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -114,16 +172,38 @@ impl Prepared {
 
     /// Bytes on the heap without the hierarchy.
     pub fn heap_bytes(&self) -> usize {
-        let MeshData { positions, triangles, normals, uvs } = &self.data;
-        let arrays = size_of_val(positions.as_slice()) + size_of_val(triangles.as_slice());
-        let optional = size_of_val(normals.as_slice()) + size_of_val(uvs.as_slice());
-        size_of::<Self>() + arrays + optional + size_of_val(self.areas.get().map_or(&[][..], Vec::as_slice))
+        let later = match &self.tree {
+            Tree::Still(_) => &[],
+            Tree::Moving(tree) => tree.keys(),
+        };
+        let arrays: usize = std::iter::once(&self.data).chain(later).map(bytes).sum();
+        size_of::<Self>() + arrays + size_of_val(self.areas.get().map_or(&[][..], Vec::as_slice))
     }
+}
+
+fn bytes(MeshData { positions, triangles, normals, uvs }: &MeshData) -> usize {
+    let arrays = size_of_val(positions.as_slice()) + size_of_val(triangles.as_slice());
+    arrays + size_of_val(normals.as_slice()) + size_of_val(uvs.as_slice())
+}
+
+/// Checks the arrays; some triangle must have an area.
+fn checked(data: &MeshData) -> Result<Extent, InvalidShape> {
+    data.check()?;
+    let extent = Extent::of(data);
+    if extent.degenerate == data.triangles.len() {
+        let message = format!("`triangles` must have an area, but all {} are degenerate", extent.degenerate);
+        return Err(invalid("triangles", message));
+    }
+    Ok(extent)
 }
 
 impl PartialEq for Prepared {
     fn eq(&self, other: &Self) -> bool {
-        self.data == other.data
+        let keys = |prepared: &Self| match &prepared.tree {
+            Tree::Still(_) => Vec::new(),
+            Tree::Moving(tree) => tree.keys().to_vec(),
+        };
+        self.data == other.data && keys(self) == keys(other)
     }
 }
 
