@@ -24,6 +24,7 @@ macro_rules! built_in {
 const BUILT_IN: &[BuiltIn] = built_in! {
     "blossom",
     "chess",
+    "chess-opening",
     "cornell-cube",
     "depth-of-field",
     "evening-cradle",
