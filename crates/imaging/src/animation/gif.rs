@@ -3,6 +3,7 @@
 //! stands still where the picture does.
 
 use super::changes::{Frames, Part};
+use super::pace::ticks_until;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::output::Destination;
@@ -52,10 +53,10 @@ impl Writer {
     /// Hundredths of a second until the next frame. They are rounded from the start, so that the whole takes as long as
     /// it should.
     fn delay(&mut self) -> u16 {
-        let at = |frame: u32| (f64::from(frame) * 100.0 / self.frames_per_second).round();
+        let at = |frame: u32| ticks_until(frame, 100.0, self.frames_per_second);
         let delay = at(self.written + 1) - at(self.written);
         self.written += 1;
-        delay.min(f64::from(u16::MAX)) as u16
+        delay.min(u64::from(u16::MAX)) as u16
     }
 }
 
