@@ -21,7 +21,7 @@ pub struct RenderArgs {
     /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
-    /// Where the picture goes, or the film (.gif, .apng); the ending says the format, `-` is standard output [default: the scene's name.png]
+    /// Where the picture goes, or the film (.mp4, .webp, .apng, .gif); the ending says the format, `-` is standard output [default: the scene's name.png]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Option<String>,
 
@@ -33,7 +33,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", help_heading = "Output")]
     pub bits: Option<u8>,
 
-    /// Quality of a JPEG
+    /// Quality of a JPEG [default: 95] or an MP4 [default: 80]
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100), help_heading = "Output")]
     pub quality: Option<u8>,
 
@@ -41,7 +41,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = value::pace, help_heading = "Output")]
     pub fps: Option<f64>,
 
-    /// How often a film is shown; 0 for over and over [default: 0]
+    /// How often a film is shown; 0 for over and over [default: 0]. An MP4 leaves that to who shows it
     #[arg(long, value_name = "N", help_heading = "Output")]
     pub plays: Option<u16>,
 
@@ -101,7 +101,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", conflicts_with_all = ["frames", "at"], help_heading = "Picture")]
     pub frame: Option<u32>,
 
-    /// Frames A up to, but without, B, as many pictures: `####` in the output's name becomes the number
+    /// Frames A up to, but without, B, as many pictures: `####` in the output's name becomes the number.
+    /// Those that are there, made by the same command from the same scene, are left
     #[arg(long, value_name = "A..B", value_parser = value::frames, conflicts_with = "at", help_heading = "Picture")]
     pub frames: Option<FrameRange>,
 
@@ -131,7 +132,8 @@ pub struct RenderArgs {
     pub checkpoint_every: f64,
 
     /// Part I of N parts that cost about the same, into a film part (.jfilm) for `juggler merge`; I counts from 0, `auto`
-    /// takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or HQ_TASK_ID
+    /// takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or HQ_TASK_ID. Of the frames of a film or of numbered pictures
+    /// every N-th; of a film, the same command without it then makes the film of them
     #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Parts")]
     pub shard: Option<Shard>,
 

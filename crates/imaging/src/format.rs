@@ -71,6 +71,11 @@ impl Format {
         matches!(self, Self::Png | Self::Jpeg | Self::Webp)
     }
 
+    /// Whether a file says in texts how it was made.
+    pub fn keeps_texts(self) -> bool {
+        matches!(self, Self::Png | Self::Exr | Self::Hdr)
+    }
+
     /// The longest side that a file can have.
     pub fn longest_side(self) -> u32 {
         match self {

@@ -162,7 +162,9 @@ fn what_cannot_be_written_is_said_before() {
         assert!(refuse(AnimationFormat::Apng, &header(1, rate, 0)).contains("frames a second"), "{rate}");
     }
     assert!(refuse(gif, &header(1, 120.0, 0)).contains("0.01 to 100 can"));
-    assert!(refuse(AnimationFormat::Webp, &AnimationHeader { width: 16_384, ..header(1, 10.0, 0) }).contains("1 to 16383"));
+    assert!(
+        refuse(AnimationFormat::Webp, &AnimationHeader { width: 16_384, ..header(1, 10.0, 0) }).contains("1 to 16383")
+    );
     assert!(refuse(gif, &header(u32::MAX, 10.0, 0)).contains("more than the limit"));
     #[cfg(feature = "av1")]
     {

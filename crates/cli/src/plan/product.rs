@@ -42,7 +42,7 @@ impl Product {
         match (output, args.bits, args.quality) {
             (STANDARD_OUTPUT, ..) => wrong("a film part needs a file: it cannot go to standard output"),
             (_, Some(_), _) => wrong("--bits is for pictures; a film part keeps the sums as they are"),
-            (_, _, Some(_)) => wrong("--quality is for JPEG files; a film part has none"),
+            (_, _, Some(_)) => wrong("--quality is for JPEG and MP4 files; a film part has none"),
             _ => Ok(Self::Part),
         }
     }
@@ -64,7 +64,7 @@ impl Encoding {
         }
         if let Some(quality) = quality {
             if format != Format::Jpeg {
-                return Err(wrong(format!("--quality is for JPEG files; a {format} file has none")));
+                return Err(wrong(format!("--quality is for JPEG and MP4 files; a {format} file has none")));
             }
             options.jpeg_quality = quality;
         }

@@ -53,7 +53,8 @@ impl AnimationFormat {
         let sides = self.sides();
         if !sides.contains(&width) || !sides.contains(&height) {
             let (least, most) = sides.into_inner();
-            let message = format!("its frames cannot be {width} × {height} pixels: each side of {self} is {least} to {most}");
+            let message =
+                format!("its frames cannot be {width} × {height} pixels: each side of {self} is {least} to {most}");
             return Err(refused(place, message));
         }
         if frames == 0 {

@@ -14,7 +14,7 @@ use juggler::tracer::render::BAND_PIXELS;
 /// What a picture of a plan takes, before its files are read.
 pub fn of(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<Memory, Failure> {
     let mut memory = Memory::of(scene, &plan.settings)?;
-    if plan.needs_film() {
+    if plan.needs_film(shot) {
         // Numbers of samples may come from a file: then all the film may get that many.
         let (crop, shards) = if plan.samples_from.is_some() { (None, 1) } else { (plan.cut.crop, shot.shard.count) };
         memory = memory.on_film(crop, plan.cut.samples.clone(), shards);
@@ -27,6 +27,18 @@ pub fn of(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<Memory, Failure> {
         memory = memory.and(format!("the {format} file"), file);
     }
     Ok(memory)
+}
+
+/// What a picture takes and with which effort it fits. A film's frame for whose checkpoint there is no room is made without
+/// one.
+pub fn fitting(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<(Memory, Effort, Shot), Failure> {
+    let memory = of(plan, scene, shot)?;
+    match effort(plan, &memory, plan.threads) {
+        Err(_) if plan.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_own) && shot.checkpoint.is_some() => {
+            fitting(plan, scene, &Shot { checkpoint: None, ..shot.clone() })
+        }
+        effort => Ok((memory, effort?, shot.clone())),
+    }
 }
 
 /// The threads and bands with which a render fits.

@@ -14,7 +14,9 @@ use crate::output::Destination;
 use crate::tone::Quantizer;
 use juggler_math::Rgb;
 use planes::Planes;
-use rav1e::color::{ChromaSamplePosition, ColorDescription, ColorPrimaries, MatrixCoefficients, TransferCharacteristics};
+use rav1e::color::{
+    ChromaSamplePosition, ColorDescription, ColorPrimaries, MatrixCoefficients, TransferCharacteristics,
+};
 use rav1e::config::{Config, EncoderConfig, SpeedSettings};
 use rav1e::data::{FrameType, Rational};
 use rav1e::prelude::{ChromaSampling, PixelRange, SceneDetectionSpeed, Tune};

@@ -1,0 +1,50 @@
+//! What stays from one frame to the next: threads, and the world where only the camera moves. Mesh files are read and
+//! their trees built once in any case: a scene's frames share its library.
+
+use crate::failure::Failure;
+use crate::plan::Plan;
+use juggler::scene::Scene;
+use juggler::{Error, Picture};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// What stays from one frame to the next.
+#[derive(Default)]
+pub struct Studio {
+    pool: Option<ThreadPool>,
+    last: Option<(Scene, Picture)>,
+}
+
+impl Studio {
+    /// Sees to it that so many threads are there.
+    pub fn gather(&mut self, threads: usize) -> Result<(), Failure> {
+        if self.pool.as_ref().is_none_or(|pool| pool.current_num_threads() != threads) {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+            self.pool = Some(pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?);
+        }
+        Ok(())
+    }
+
+    /// Does what takes all threads.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
+    /// A frame with its world, which is that of the frame before where the same things stand in the same places. The old
+    /// world goes before a new one is built, so that there is never room needed for two.
+    pub fn picture(&mut self, plan: &Plan, scene: &Scene) -> Result<Picture, Failure> {
+        let last = self.last.take().filter(|(last, _)| scene.has_world_of(last));
+        let picture = self.on_threads(|| match &last {
+            Some((_, picture)) => picture.again(scene, &plan.settings),
+            None => Picture::new(scene, &plan.settings),
+        });
+        picture.map_err(|error: Error| error.into())
+    }
+
+    /// Keeps a frame's world for the next.
+    pub fn keep(&mut self, scene: &Scene, picture: Picture) {
+        self.last = Some((scene.clone(), picture));
+    }
+}
