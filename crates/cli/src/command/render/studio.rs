@@ -48,3 +48,35 @@ impl Studio {
         self.last = Some((scene.clone(), picture));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::RenderArgs;
+    use std::sync::Arc;
+
+    /// Whether the second frame of a scene has the world of the first.
+    fn stays(eye: &str, ball: &str) -> bool {
+        let text = format!(
+            r#"{{"version": 1, "camera": {{"perspective": {{"eye": [{eye}, 1, 6]}}}},
+                "objects": [{{"shape": "sphere", "transform": [{{"translate": [{ball}, 0, 0]}}]}}]}}"#
+        );
+        let plan = Plan::new(RenderArgs::of(["a"]).unwrap()).unwrap();
+        let first = Scene::from_json(text, "a.json").unwrap();
+        let second = first.at_frame(1.0).unwrap();
+        let mut studio = Studio::default();
+        studio.gather(1).unwrap();
+        let picture = studio.picture(&plan, &first).unwrap();
+        let world = Arc::clone(picture.world());
+        studio.keep(&first, picture);
+        let again = studio.picture(&plan, &second).unwrap();
+        assert_eq!(again.fingerprint(), Picture::new(&second, &plan.settings).unwrap().fingerprint());
+        Arc::ptr_eq(&world, again.world())
+    }
+
+    #[test]
+    fn a_world_stays_while_only_the_camera_moves() {
+        assert!(stays("\"=frame\"", "0"));
+        assert!(!stays("0", "\"=frame\""));
+    }
+}
