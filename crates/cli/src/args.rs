@@ -4,6 +4,7 @@ use crate::command::Command;
 use crate::progress::Progress;
 use crate::value::{self, FrameRange, Shard};
 use clap::{Args as Arguments, Parser};
+use juggler::imaging::Look;
 use juggler::tracer::film::Rect;
 
 /// A ray tracer whose pictures are the same to the bit everywhere.
@@ -52,6 +53,11 @@ pub struct RenderArgs {
     /// Stops by which the picture is brightened
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, help_heading = "Output")]
     pub exposure: Option<f32>,
+
+    /// A look of old screens: `ham` is the Amiga's 4,096 colours, held and modified (at home in 320x200), `ham-dithered` the same
+    /// with what lies between them dithered
+    #[arg(long, value_name = "LOOK", value_parser = value::look, help_heading = "Output")]
+    pub look: Option<Look>,
 
     /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", help_heading = "Output")]

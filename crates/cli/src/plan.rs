@@ -97,7 +97,7 @@ impl Plan {
         let reel = Reel::new(&args, &output)?;
         let output = reel.as_ref().map_or(output, Reel::frames);
         let product = match reel {
-            Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?),
+            Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?.with_look(args.look)?),
             None => Product::new(&args, &output)?,
         };
         let moments = Moments::new(&args, &output, reel.is_some())?;
@@ -244,7 +244,7 @@ impl Moments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler::imaging::{Format, SampleDepth};
+    use juggler::imaging::{Format, Look, SampleDepth};
     use juggler::tracer::film::Rect;
 
     fn plan(line: &str) -> Result<Plan, Failure> {
@@ -284,6 +284,11 @@ mod tests {
         assert_eq!(encoding("a -o b.jpg --quality 7").options.jpeg_quality, 7);
         assert!(refused("a -o b.jpg --bits 16").contains("8 bits"));
         assert!(refused("a --quality 7").contains("JPEG"));
+        assert_eq!(encoding("a --look ham -o b.webp").options.look, Look::Ham);
+        assert_eq!(plan("a --look ham-dithered -o b.gif").unwrap().options().look, Look::HamDithered);
+        assert!(
+            refused("a --look ham -o b.exr").contains("light") && refused("a --look ham -o b.jfilm").contains("--look")
+        );
     }
 
     #[test]

@@ -120,7 +120,8 @@ impl Format {
             Self::Webp => whole(3 + 4 + 8).saturating_add(width * 64),
             Self::Pfm => (width * 24).saturating_add(if seekable { 0 } else { whole(24) }),
         };
-        bytes.saturating_add(FIXED)
+        let look = if self.has_looks() { header.options.look.bytes_a_pixel() } else { 0 };
+        bytes.saturating_add(whole(look)).saturating_add(FIXED)
     }
 }
 

@@ -160,7 +160,7 @@ impl Session {
         let build = built.elapsed();
         let take = Take { shot: &shot, picture: &picture, effort, expected, load, build, moment };
         let is_rendered = studio.on_threads(|| self.picture(&take, interrupts))?;
-        studio.keep(scene, picture);
+        studio.keep(&self.plan, scene, picture)?;
         Ok(is_rendered)
     }
 

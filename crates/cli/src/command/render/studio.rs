@@ -35,17 +35,20 @@ impl Studio {
     /// A frame with its world, which is that of the frame before where the same things stand in the same places. The old
     /// world goes before a new one is built, so that there is never room needed for two.
     pub fn picture(&mut self, plan: &Plan, scene: &Scene) -> Result<Picture, Failure> {
+        // How long the shutter is open may be wished for, and decides what moves.
+        let scene = plan.settings.apply(scene)?;
         let last = self.last.take().filter(|(last, _)| scene.has_world_of(last));
         let picture = self.on_threads(|| match &last {
-            Some((_, picture)) => picture.again(scene, &plan.settings),
-            None => Picture::new(scene, &plan.settings),
+            Some((_, picture)) => picture.again(&scene, &plan.settings),
+            None => Picture::new(&scene, &plan.settings),
         });
         picture.map_err(|error: Error| error.into())
     }
 
     /// Keeps a frame's world for the next.
-    pub fn keep(&mut self, scene: &Scene, picture: Picture) {
-        self.last = Some((scene.clone(), picture));
+    pub fn keep(&mut self, plan: &Plan, scene: &Scene, picture: Picture) -> Result<(), Failure> {
+        self.last = Some((plan.settings.apply(scene)?, picture));
+        Ok(())
     }
 }
 
@@ -56,19 +59,19 @@ mod tests {
     use std::sync::Arc;
 
     /// Whether the second frame of a scene has the world of the first.
-    fn stays(eye: &str, ball: &str) -> bool {
+    fn stays(eye: &str, ball: &str, flags: &str) -> bool {
         let text = format!(
             r#"{{"version": 1, "camera": {{"perspective": {{"eye": [{eye}, 1, 6]}}}},
                 "objects": [{{"shape": "sphere", "transform": [{{"translate": [{ball}, 0, 0]}}]}}]}}"#
         );
-        let plan = Plan::new(RenderArgs::of(["a"]).unwrap()).unwrap();
+        let plan = Plan::new(RenderArgs::of(flags.split(' ')).unwrap()).unwrap();
         let first = Scene::from_json(text, "a.json").unwrap();
         let second = first.at_frame(1.0).unwrap();
         let mut studio = Studio::default();
         studio.gather(1).unwrap();
         let picture = studio.picture(&plan, &first).unwrap();
         let world = Arc::clone(picture.world());
-        studio.keep(&first, picture);
+        studio.keep(&plan, &first, picture).unwrap();
         let again = studio.picture(&plan, &second).unwrap();
         assert_eq!(again.fingerprint(), Picture::new(&second, &plan.settings).unwrap().fingerprint());
         Arc::ptr_eq(&world, again.world())
@@ -76,7 +79,10 @@ mod tests {
 
     #[test]
     fn a_world_stays_while_only_the_camera_moves() {
-        assert!(stays("\"=frame\"", "0"));
-        assert!(!stays("0", "\"=frame\""));
+        assert!(stays("\"=frame\"", "0", "a"));
+        assert!(!stays("0", "\"=frame\"", "a"));
+        // In the same place whenever a frame begins, but not of the same speed.
+        let swings = "\"=(frame - 1) * frame * frame\"";
+        assert!(stays("0", swings, "a") && !stays("0", swings, "a --shutter 0..0.5"));
     }
 }
