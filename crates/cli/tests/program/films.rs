@@ -189,9 +189,20 @@ fn numbered_pictures_that_are_there_are_left() {
         folder.good(&format!("{line} --seed 2"));
         assert_ne!(time(), before, "another command makes it anew");
     }
+    let again = || {
+        folder.good(&format!("{LINE} --frames 0..2 -o f_#.png"));
+        fs::read(folder.path("f_1.png")).unwrap()
+    };
+    let plain = again();
     folder.good(&format!("{LINE} --frame 1 -o one.png"));
-    folder.good(&format!("{LINE} --frames 0..3 -o f_#.png"));
-    folder.good("compare one.png f_1.png");
+    assert!(plain == fs::read(folder.path("one.png")).unwrap(), "equal pictures are equal files");
+    // The scene's tone is no part of its fingerprint, but it shows.
+    let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
+    let bright = scene.replacen('{', r#"{"tone": {"exposure_stops": 1},"#, 1);
+    fs::write(folder.path("ball.json"), bright).unwrap();
+    assert!(again() != plain);
+    fs::write(folder.path("ball.json"), scene).unwrap();
+    assert!(again() == plain);
 }
 
 #[test]

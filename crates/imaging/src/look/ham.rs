@@ -161,7 +161,11 @@ mod tests {
         let mut random = Random::new(7);
         let mut pixel = |x: usize, y: usize| {
             let noise = random.range(0.0, 20.0) as u8;
-            if (x / 9 + y / 7) % 3 == 0 { [220, 40 + noise, 10] } else { [(x * 3) as u8, (y * 5) as u8, 90 + noise] }
+            if (x / 9 + y / 7).is_multiple_of(3) {
+                [220, 40 + noise, 10]
+            } else {
+                [(x * 3) as u8, (y * 5) as u8, 90 + noise]
+            }
         };
         (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| pixel(x, y)).collect()
     }

@@ -16,7 +16,7 @@ use crate::progress::{Course, Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
-use juggler::imaging::{self, AnimationHeader, Format, Header, RowWriter};
+use juggler::imaging::{self, AnimationHeader, Format, Header, RowWriter, Tone};
 use juggler::memory::Effort;
 use juggler::scene::Scene;
 use juggler::tracer::film::Rect;
@@ -167,12 +167,14 @@ impl Session {
     fn picture(&self, take: &Take, interrupts: &mut Option<Interrupts>) -> Result<bool, Failure> {
         let mut header = take.picture.header(self.plan.options());
         header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, take.shot)));
-        if self.plan.leaves_what_is_there() {
-            header.metadata.push(("Tone".to_owned(), format!("{:?}", header.tone)));
-            if reel::is_made(take.shot, &header) {
-                self.tell_left(take.shot)?;
-                return Ok(false);
-            }
+        if header.tone != Tone::default() {
+            // The scene's own tone is no part of its fingerprint.
+            let tone = serde_json::to_string(&header.tone).unwrap_or_default();
+            header.metadata.push((reel::TONE.to_owned(), tone));
+        }
+        if self.plan.leaves_what_is_there() && reel::is_made(take.shot, &header) {
+            self.tell_left(take.shot)?;
+            return Ok(false);
         }
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,

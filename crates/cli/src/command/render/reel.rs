@@ -17,6 +17,9 @@ const WAITING: usize = 2;
 /// The file in a folder of frames by which processes know of each other.
 const LOCK: &str = ".lock";
 
+/// The text of a picture that says its tone, where it is not the usual one.
+pub const TONE: &str = "Tone";
+
 /// How a process uses a folder of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
@@ -138,6 +141,9 @@ pub fn is_made(shot: &Shot, header: &Header) -> bool {
     shot.stats.as_ref().is_none_or(has_stats)
         && imaging::inspect(Path::new(&shot.output)).is_ok_and(|facts| {
             let same_size = (facts.width, facts.height) == (header.width, header.height);
-            same_size && header.metadata.iter().all(|text| facts.metadata.contains(text))
+            let has_tone = |texts: &[(String, String)]| texts.iter().any(|(key, _)| key == TONE);
+            same_size
+                && header.metadata.iter().all(|text| facts.metadata.contains(text))
+                && has_tone(&facts.metadata) == has_tone(&header.metadata)
         })
 }
