@@ -2,7 +2,7 @@
 # Everything that must hold before a change lands; CI runs exactly this. Cheap checks first.
 #   ./check.sh            all of it
 #   ./check.sh quick      without the release build, and without driving windows and pages
-#   ./check.sh --windows  instead, only the window of juggler view and the page of juggler serve, driven
+#   ./check.sh --windows  instead, only the window of juggler view, the page of juggler serve and films in a browser, driven
 #   ./check.sh --web      instead, the page that renders in the browser alone (web/build.sh): built, driven in Chromium, not in CI
 #   ./check.sh --cluster  instead, the commands of docs/cluster.md on a small Slurm of its own: as root, some minutes, not in CI
 set -euo pipefail
@@ -33,6 +33,9 @@ drive_windows() {
 
   step "tests: the page of juggler serve, in Chromium"
   drive tests/browser/test.sh "chromium nodejs npm" chromium node npm
+
+  step "tests: films, in Chromium"
+  drive tests/films/test.sh "chromium nodejs npm" chromium node npm
 }
 
 if [ "$mode" = --windows ]; then

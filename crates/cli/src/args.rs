@@ -4,6 +4,7 @@ use crate::command::Command;
 use crate::progress::Progress;
 use crate::value::{self, FrameRange, Shard};
 use clap::{Args as Arguments, Parser};
+use juggler::imaging::Look;
 use juggler::tracer::film::Rect;
 
 /// A ray tracer whose pictures are the same to the bit everywhere.
@@ -21,7 +22,7 @@ pub struct RenderArgs {
     /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
-    /// Where the picture goes, or the film (.gif, .apng); the ending says the format, `-` is standard output [default: the scene's name.png]
+    /// Where the picture goes, or the film (.mp4, .webp, .apng, .gif); the ending says the format, `-` is standard output [default: the scene's name.png]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Option<String>,
 
@@ -33,7 +34,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", help_heading = "Output")]
     pub bits: Option<u8>,
 
-    /// Quality of a JPEG
+    /// Quality of a JPEG [default: 95] or an MP4 [default: 80]
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100), help_heading = "Output")]
     pub quality: Option<u8>,
 
@@ -41,7 +42,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = value::pace, help_heading = "Output")]
     pub fps: Option<f64>,
 
-    /// How often a film is shown; 0 for over and over [default: 0]
+    /// How often a film is shown; 0 for over and over [default: 0]. An MP4 leaves that to who shows it
     #[arg(long, value_name = "N", help_heading = "Output")]
     pub plays: Option<u16>,
 
@@ -52,6 +53,11 @@ pub struct RenderArgs {
     /// Stops by which the picture is brightened
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, help_heading = "Output")]
     pub exposure: Option<f32>,
+
+    /// A look of old screens: `ham` is the Amiga's 4,096 colours, held and modified (at home in 320x200), `ham-dithered` the same
+    /// with what lies between them dithered
+    #[arg(long, value_name = "LOOK", value_parser = value::look, help_heading = "Output")]
+    pub look: Option<Look>,
 
     /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -101,7 +107,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", conflicts_with_all = ["frames", "at"], help_heading = "Picture")]
     pub frame: Option<u32>,
 
-    /// Frames A up to, but without, B, as many pictures: `####` in the output's name becomes the number
+    /// Frames A up to, but without, B, as many pictures: `####` in the output's name becomes the number.
+    /// Those that are there, made by the same command from the same scene, are left
     #[arg(long, value_name = "A..B", value_parser = value::frames, conflicts_with = "at", help_heading = "Picture")]
     pub frames: Option<FrameRange>,
 
@@ -131,7 +138,8 @@ pub struct RenderArgs {
     pub checkpoint_every: f64,
 
     /// Part I of N parts that cost about the same, into a film part (.jfilm) for `juggler merge`; I counts from 0, `auto`
-    /// takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or HQ_TASK_ID
+    /// takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or HQ_TASK_ID. Of the frames of a film or of numbered pictures
+    /// every N-th; of a film, the same command without it then makes the film of them
     #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Parts")]
     pub shard: Option<Shard>,
 

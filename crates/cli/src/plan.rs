@@ -97,12 +97,13 @@ impl Plan {
         let reel = Reel::new(&args, &output)?;
         let output = reel.as_ref().map_or(output, Reel::frames);
         let product = match reel {
-            Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?),
+            Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?.with_look(args.look)?),
             None => Product::new(&args, &output)?,
         };
-        let (cut, checkpoint) = (Cut::new(&args, product)?, Checkpoint::new(&args)?);
-        let shard = Shard::new(args.shard, parts::variable)?;
         let moments = Moments::new(&args, &output, reel.is_some())?;
+        let cut = Cut::new(&args, product, matches!(moments, Moments::Frames(_)))?;
+        let checkpoint = Checkpoint::new(&args, reel.as_ref())?;
+        let shard = Shard::new(args.shard, parts::variable)?;
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
             settings: settings(&args, product),
@@ -137,9 +138,15 @@ impl Plan {
         }
     }
 
-    /// Whether the picture is made on a film that is kept, not row by row.
-    pub fn needs_film(&self) -> bool {
-        self.product == Product::Part || self.checkpoint.is_some() || self.settings.limit != Limit::Samples
+    /// Whether a picture is made on a film that is kept, not row by row.
+    pub fn needs_film(&self, shot: &Shot) -> bool {
+        self.product == Product::Part || shot.checkpoint.is_some() || self.settings.limit != Limit::Samples
+    }
+
+    /// Whether a picture that is there already, made by the same command from the same scene, is left as it is.
+    pub fn leaves_what_is_there(&self) -> bool {
+        let Product::Picture(encoding) = self.product else { return false };
+        matches!(self.moments, Moments::Frames(_)) && encoding.format.keeps_texts()
     }
 
     /// The pictures, for an animation of this length and pace.
@@ -154,16 +161,24 @@ impl Plan {
         match self.moments {
             Moments::Frame(frame) => Ok(vec![single(frame)]),
             Moments::At(seconds) => Ok(vec![single(seconds * frames_per_second)]),
-            Moments::Frames(range) => {
-                let frames = range.first..range.end.unwrap_or(length);
+            Moments::Frames(_) => {
+                let frames = self.frames(length);
                 if frames.is_empty() {
-                    let first = range.first;
+                    let first = frames.start;
                     return Err(Failure::Wrong(format!(
                         "no frame is left from {first} on: the animation has {length}"
                     )));
                 }
                 Ok(self.numbered(frames))
             }
+        }
+    }
+
+    /// The frames that are asked for, those of other shards too, for an animation of this length.
+    pub fn frames(&self, length: u32) -> Range<u32> {
+        match self.moments {
+            Moments::Frames(range) => range.first..range.end.unwrap_or(length),
+            Moments::Frame(_) | Moments::At(_) => 0..1,
         }
     }
 
@@ -178,6 +193,11 @@ impl Plan {
             shard,
         };
         let Shard { index, count } = self.shard;
+        if self.product != Product::Part {
+            // Pictures are shared whole, in turns.
+            let own = frames.skip(index as usize).step_by(count as usize);
+            return own.map(|frame| shot(frame, Shard::WHOLE)).collect();
+        }
         let shares = share::frames(frames, index, count).into_iter();
         shares.map(|FrameShare { frame, index, count }| shot(frame, Shard { index, count })).collect()
     }
@@ -224,7 +244,7 @@ impl Moments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler::imaging::{Format, SampleDepth};
+    use juggler::imaging::{Format, Look, SampleDepth};
     use juggler::tracer::film::Rect;
 
     fn plan(line: &str) -> Result<Plan, Failure> {
@@ -264,6 +284,11 @@ mod tests {
         assert_eq!(encoding("a -o b.jpg --quality 7").options.jpeg_quality, 7);
         assert!(refused("a -o b.jpg --bits 16").contains("8 bits"));
         assert!(refused("a --quality 7").contains("JPEG"));
+        assert_eq!(encoding("a --look ham -o b.webp").options.look, Look::Ham);
+        assert_eq!(plan("a --look ham-dithered -o b.gif").unwrap().options().look, Look::HamDithered);
+        assert!(
+            refused("a --look ham -o b.exr").contains("light") && refused("a --look ham -o b.jfilm").contains("--look")
+        );
     }
 
     #[test]
@@ -280,14 +305,38 @@ mod tests {
     }
 
     #[test]
+    fn webps_are_pictures_unless_frames_go_into_one() {
+        let is_film = |line: &str| plan(line).unwrap().reel.is_some();
+        assert!(is_film("a -o b.webp --frames 0..3") && is_film("a -o b.webp --fps 5") && is_film("a -o b.mp4"));
+        assert!(!is_film("a -o b.webp") && !is_film("a -o b_##.webp --frames 0..3"));
+    }
+
+    #[test]
+    fn frames_are_shared_in_turns() {
+        for output in ["f_##.png", "f.gif"] {
+            let frames = |shard: &str| {
+                let shots = plan(&format!("a --frames 3..8 -o {output} {shard}")).unwrap().shots(30, 24.0).unwrap();
+                shots.iter().map(|shot| (shot.frame, shot.shard)).collect::<Vec<_>>()
+            };
+            assert_eq!(frames("--shard 0/2"), [3.0, 5.0, 7.0].map(|frame| (frame, Shard::WHOLE)));
+            assert_eq!(frames("--shard 1/2"), [4.0, 6.0].map(|frame| (frame, Shard::WHOLE)));
+            assert!(frames("--shard 5/9").is_empty());
+        }
+        let kept = plan("a -o b.gif").unwrap().shots(2, 24.0).unwrap();
+        assert_eq!(kept[1].checkpoint.as_deref(), Some("b.gif.frames/frame_0001.jfilm"));
+    }
+
+    #[test]
     fn parts_are_known_by_their_ending_and_kept_on_film() {
         assert_eq!(plan("a -o b.jfilm").unwrap().product, Product::Part);
         assert_eq!(plan("a -o b --format jfilm").unwrap().product, Product::Part);
         for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"]
         {
-            assert!(plan(line).unwrap().needs_film(), "{line}");
+            let plan = plan(line).unwrap();
+            assert!(plan.needs_film(&plan.shots(1, 1.0).unwrap()[0]), "{line}");
         }
-        assert!(!plan("a").unwrap().needs_film());
+        let plain = plan("a").unwrap();
+        assert!(!plain.needs_film(&plain.shots(1, 1.0).unwrap()[0]));
         assert!(refused("a -o b.jfilm --bits 16").contains("--bits"));
         assert!(refused("a -o - --format jfilm").contains("standard output"));
         // A picture's crop is all that the picture shows; a part's is where it lies.

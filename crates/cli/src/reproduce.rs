@@ -2,7 +2,7 @@
 //! that equal pictures are equal files.
 
 use crate::plan::{Moments, Plan, Shot};
-use juggler::imaging::{Options, SampleDepth};
+use juggler::imaging::{Look, Options, SampleDepth};
 use juggler::tracer::film::Rect;
 use juggler::{Limit, Settings};
 use std::fmt::Display;
@@ -29,7 +29,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         curve,
         exposure_stops,
     } = &plan.settings;
-    let Options { png_16_bit, jpeg_quality, exr_depth, .. } = plan.options();
+    let Options { png_16_bit, jpeg_quality, exr_depth, look, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
     words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
     match limit {
@@ -49,6 +49,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--seed", *seed);
     words.flag("--tone", curve.as_deref().map(quoted));
     words.flag("--exposure", *exposure_stops);
+    words.flag("--look", Some(look.name()).filter(|_| look != Look::Plain));
     words.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
     words.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
     words.0
@@ -93,7 +94,7 @@ mod tests {
     fn what_decides_the_picture_is_said_and_nothing_else() {
         assert_eq!(commands(&["a", "-o", "b.png", "--threads", "3", "--quiet", "--frame", "0"]), ["juggler render a"]);
         let all = "a.json --size 4x3 --samples 2 --integrator path --max-depth 5 --camera top --crop 1,2,3,4 --seed 7 \
-                   --tone gamma --exposure -0.5 --bits 16";
+                   --tone gamma --exposure -0.5 --look ham --bits 16";
         let words: Vec<&str> = all.split_whitespace().collect();
         assert_eq!(commands(&words), [format!("juggler render {}", words.join(" "))]);
         assert_eq!(commands(&["a", "-o", "b.jpg", "--quality", "7"]), ["juggler render a --quality 7"]);

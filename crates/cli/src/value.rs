@@ -1,5 +1,6 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
+use juggler::imaging::Look;
 use juggler::imaging::animation::PACES;
 use juggler::scene::compile::MAX_SHUTTER;
 use juggler::tracer::film::{BLOCK, Rect};
@@ -42,6 +43,12 @@ pub struct FrameRange {
     pub first: u32,
     /// The frame after the last.
     pub end: Option<u32>,
+}
+
+/// A look by its name.
+pub fn look(text: &str) -> Result<Look, String> {
+    let look = Look::ALL.into_iter().find(|look| look.name() == text);
+    look.ok_or_else(|| Look::ALL.map(Look::name).join(" or "))
 }
 
 /// Frames a second.

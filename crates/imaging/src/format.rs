@@ -71,6 +71,11 @@ impl Format {
         matches!(self, Self::Png | Self::Jpeg | Self::Webp)
     }
 
+    /// Whether a file says in texts how it was made.
+    pub fn keeps_texts(self) -> bool {
+        matches!(self, Self::Png | Self::Exr | Self::Hdr)
+    }
+
     /// The longest side that a file can have.
     pub fn longest_side(self) -> u32 {
         match self {
@@ -115,7 +120,8 @@ impl Format {
             Self::Webp => whole(3 + 4 + 8).saturating_add(width * 64),
             Self::Pfm => (width * 24).saturating_add(if seekable { 0 } else { whole(24) }),
         };
-        bytes.saturating_add(FIXED)
+        let look = if self.has_looks() { header.options.look.bytes_a_pixel() } else { 0 };
+        bytes.saturating_add(whole(look)).saturating_add(FIXED)
     }
 }
 

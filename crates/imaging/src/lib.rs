@@ -5,6 +5,7 @@
 //! whole [`juggler_math::Image`], for comparisons and textures.
 //!
 //! - [`tone`]: from linear light to levels of 8 or 16 bits;
+//! - [`look`]: what may be done with the levels of a whole picture;
 //! - [`codec`]: one file per format, writer and reader;
 //! - [`animation`]: files of moving pictures;
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
@@ -18,6 +19,7 @@ pub mod compare;
 mod error;
 pub mod format;
 pub mod input;
+pub mod look;
 pub mod output;
 pub mod tone;
 
@@ -27,5 +29,6 @@ pub use compare::{Difference, compare};
 pub use error::ImageError;
 pub use format::Format;
 pub use input::{Limits, decode, inspect, read, read_within};
+pub use look::Look;
 pub use output::{Destination, create, to_standard_output, write_image};
 pub use tone::{AnyCurve, Tone};

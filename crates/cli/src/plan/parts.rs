@@ -2,7 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::plan::Product;
+use crate::plan::{Product, Reel};
 use crate::value;
 use juggler::tracer::film::Rect;
 use std::env;
@@ -19,6 +19,8 @@ pub struct Checkpoint {
     pub file: String,
     /// From one to the next.
     pub every: Duration,
+    /// Whether nobody asked for it: then it goes when its picture is there, and what does not fit is no mistake.
+    pub is_own: bool,
 }
 
 /// Which of how many shards.
@@ -40,13 +42,15 @@ pub struct Cut {
 }
 
 impl Checkpoint {
-    /// What was asked for.
-    pub fn new(args: &RenderArgs) -> Result<Option<Self>, Failure> {
-        let Some(file) = args.checkpoint.clone() else { return Ok(None) };
-        if file.is_empty() {
-            return Err(Failure::Wrong("the checkpoint has no name".into()));
+    /// What was asked for; the frames of a film are kept in any case.
+    pub fn new(args: &RenderArgs, reel: Option<&Reel>) -> Result<Option<Self>, Failure> {
+        let every = Duration::from_secs_f64(args.checkpoint_every);
+        match (&args.checkpoint, reel) {
+            (Some(file), _) if file.is_empty() => Err(Failure::Wrong("the checkpoint has no name".into())),
+            (Some(file), _) => Ok(Some(Self { file: file.clone(), every, is_own: false })),
+            (None, Some(reel)) => Ok(Some(Self { file: reel.checkpoints(), every, is_own: true })),
+            (None, None) => Ok(None),
         }
-        Ok(Some(Self { file, every: Duration::from_secs_f64(args.checkpoint_every) }))
     }
 }
 
@@ -87,13 +91,16 @@ pub fn variable(name: &str) -> Option<String> {
 }
 
 impl Cut {
-    /// What was asked for. A picture's crop is the picture; a part's is a piece of it.
-    pub fn new(args: &RenderArgs, product: Product) -> Result<Self, Failure> {
+    /// What was asked for. A picture's crop is the picture; a part's is a piece of it. Several frames, `are_frames`, can
+    /// be shared as they are.
+    pub fn new(args: &RenderArgs, product: Product, are_frames: bool) -> Result<Self, Failure> {
         let is_part = product == Product::Part;
-        for (flag, given) in [("--shard", args.shard.is_some()), ("--sample-range", args.sample_range.is_some())] {
+        let shard = args.shard.is_some() && !are_frames;
+        let or = "; of several frames (--frames) it takes some";
+        for (flag, given, or) in [("--shard", shard, or), ("--sample-range", args.sample_range.is_some(), "")] {
             if given && !is_part {
                 return Err(Failure::Wrong(format!(
-                    "{flag} makes a part of a picture, for `juggler merge`: give an output that ends in .jfilm"
+                    "{flag} makes a part of a picture, for `juggler merge`: give an output that ends in .jfilm{or}"
                 )));
             }
         }
@@ -132,7 +139,7 @@ mod tests {
         let refused = |line: &str| {
             let args = RenderArgs::of(line.split(' ')).unwrap();
             let product = Product::new(&args, args.output.as_deref().unwrap()).unwrap();
-            Cut::new(&args, product).err().map(|failure| format!("{failure:?}"))
+            Cut::new(&args, product, false).err().map(|failure| format!("{failure:?}"))
         };
         assert!(refused("a --shard 0/2 -o a.png").unwrap().contains(".jfilm"));
         assert!(refused("a --sample-range 0..16 -o a.png").unwrap().contains(".jfilm"));

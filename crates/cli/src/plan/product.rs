@@ -3,7 +3,7 @@
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
-use juggler::imaging::{Format, Options, SampleDepth};
+use juggler::imaging::{Format, Look, Options, SampleDepth};
 use std::path::Path;
 
 /// The ending of film parts.
@@ -35,14 +35,15 @@ impl Product {
             None => Path::new(output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING)),
         };
         if !is_part {
-            let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output);
-            return encoding.map(Self::Picture);
+            let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
+            return encoding.with_look(args.look).map(Self::Picture);
         }
         let wrong = |message: &str| Err(Failure::Wrong(message.into()));
         match (output, args.bits, args.quality) {
             (STANDARD_OUTPUT, ..) => wrong("a film part needs a file: it cannot go to standard output"),
             (_, Some(_), _) => wrong("--bits is for pictures; a film part keeps the sums as they are"),
-            (_, _, Some(_)) => wrong("--quality is for JPEG files; a film part has none"),
+            _ if args.look.is_some() => wrong("--look is for pictures; a film part keeps the sums as they are"),
+            (_, _, Some(_)) => wrong("--quality is for JPEG and MP4 files; a film part has none"),
             _ => Ok(Self::Part),
         }
     }
@@ -64,11 +65,20 @@ impl Encoding {
         }
         if let Some(quality) = quality {
             if format != Format::Jpeg {
-                return Err(wrong(format!("--quality is for JPEG files; a {format} file has none")));
+                return Err(wrong(format!("--quality is for JPEG and MP4 files; a {format} file has none")));
             }
             options.jpeg_quality = quality;
         }
         Ok(Self { format, options })
+    }
+
+    /// The same with a look, which takes levels.
+    pub fn with_look(mut self, look: Option<Look>) -> Result<Self, Failure> {
+        if look.is_some() && !self.format.has_looks() {
+            return Err(Failure::Wrong(format!("--look is for levels; a {} file keeps light as it is", self.format)));
+        }
+        self.options.look = look.unwrap_or_default();
+        Ok(self)
     }
 }
 

@@ -3,8 +3,12 @@
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
-use juggler::imaging::AnimationFormat;
+use juggler::imaging::animation::DEFAULT_QUALITY;
+use juggler::imaging::{AnimationFormat, AnimationHeader, Tone};
 use std::path::Path;
+
+/// The ending of films that only a program with the feature `av1` makes.
+const MP4: &str = "mp4";
 
 /// Several frames in one file of moving pictures.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +21,8 @@ pub struct Reel {
     pub frames_per_second: Option<f64>,
     /// How often it is shown; 0: over and over.
     pub plays: u16,
+    /// From small, 1, to good, 100.
+    pub quality: u8,
 }
 
 impl Reel {
@@ -24,31 +30,34 @@ impl Reel {
     pub fn new(args: &RenderArgs, output: &str) -> Result<Option<Self>, Failure> {
         let wrong = |message: String| Err(Failure::Wrong(message));
         let named = args.format.as_ref().map(|name| format!("film.{name}"));
-        let format = AnimationFormat::from_path(Path::new(named.as_deref().unwrap_or(output)));
+        let named = Path::new(named.as_deref().unwrap_or(output));
+        let format = AnimationFormat::from_path(named).filter(|format| is_wanted(*format, args, output));
         let Some(format) = format else {
+            if named.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(MP4)) {
+                return wrong(format!("`{output}`: this program was built without MP4 (the feature `av1`)"));
+            }
             let flag = args.fps.map(|_| "--fps").or(args.plays.map(|_| "--plays"));
-            let endings = AnimationFormat::ALL.map(|format| format!(".{}", format.ending())).join(" ");
+            let endings = AnimationFormat::endings();
             return flag.map_or(Ok(None), |flag| wrong(format!("{flag} is for moving pictures: {endings}")));
         };
         if output == STANDARD_OUTPUT {
             return wrong(format!("a film needs a file: {format} cannot go to standard output"));
         }
-        let unfit = [
-            ("--bits", args.bits.is_some()),
-            ("--quality", args.quality.is_some()),
-            ("--frame", args.frame.is_some()),
-            ("--at", args.at.is_some()),
-        ];
+        let unfit = [("--bits", args.bits.is_some()), ("--frame", args.frame.is_some()), ("--at", args.at.is_some())];
         if let Some((flag, _)) = unfit.into_iter().find(|(_, given)| *given) {
             return wrong(format!("{flag} is for pictures; `{output}` is a film of several frames"));
         }
-        if args.shard.is_some() {
+        if args.quality.is_some() && !format.has_quality() {
+            return wrong(format!("--quality is for JPEG and MP4 files; {format} has none"));
+        }
+        if args.plays.is_some() && !format.says_how_often() {
             return wrong(format!(
-                "the frames of `{output}` cannot be shared out; machines share them as pictures: -o 'frame_####.png'"
+                "--plays: how often an {format} is shown is up to who shows it; .webp .apng .gif say it"
             ));
         }
         let (file, frames_per_second) = (output.to_owned(), args.fps);
-        Ok(Some(Self { format, file, frames_per_second, plays: args.plays.unwrap_or(0) }))
+        let (plays, quality) = (args.plays.unwrap_or(0), args.quality.unwrap_or(DEFAULT_QUALITY));
+        Ok(Some(Self { format, file, frames_per_second, plays, quality }))
     }
 
     /// Where the finished frames are until the film is complete.
@@ -60,4 +69,33 @@ impl Reel {
     pub fn frames(&self) -> String {
         format!("{}/frame_####.png", self.folder())
     }
+
+    /// Where a frame under way is kept.
+    pub fn checkpoints(&self) -> String {
+        format!("{}/frame_####.jfilm", self.folder())
+    }
+
+    /// What the film says besides its frames, of which there are so many; `pace` is the scene's.
+    pub fn header(&self, [width, height]: [u32; 2], frames: usize, pace: f64) -> AnimationHeader {
+        AnimationHeader {
+            width,
+            height,
+            tone: Tone::default(),
+            frames: u32::try_from(frames).unwrap_or(u32::MAX),
+            frames_per_second: self.frames_per_second.unwrap_or(pace),
+            plays: self.plays,
+            quality: self.quality,
+        }
+    }
+
+    /// Whether the format can take such a film.
+    pub fn check(&self, header: &AnimationHeader) -> Result<(), Failure> {
+        self.format.check(&self.file, header).map_err(|error| Failure::Wrong(error.to_string()))
+    }
+}
+
+/// A `.webp` is a picture unless several frames go into one file.
+fn is_wanted(format: AnimationFormat, args: &RenderArgs, output: &str) -> bool {
+    let several = args.frames.is_some() && !output.contains('#');
+    format != AnimationFormat::Webp || several || args.fps.is_some() || args.plays.is_some()
 }

@@ -3,6 +3,7 @@
 
 use crate::harness::{Folder, Run};
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -12,15 +13,21 @@ const LINE: &str = "render ball.json --size 64x36 --samples 1";
 #[test]
 fn a_film_has_all_frames_and_leaves_nothing_else() {
     let folder = Folder::new();
-    for ending in ["gif", "apng"] {
+    for ending in ["gif", "apng", "webp --frames 0..4", "mp4"] {
         let run = folder.good(&format!("{LINE} -o film.{ending}"));
-        assert!(run.stdout.starts_with(&format!("film.{ending}: 4 frames, ")), "{}", run.stdout);
+        let file = format!("film.{}", ending.split(' ').next().unwrap());
+        assert!(run.stdout.starts_with(&format!("{file}: 4 frames, ")), "{}", run.stdout);
     }
-    assert_eq!(folder.files(), ["film.apng", "film.gif"]);
-    let [gif, apng] = ["film.gif", "film.apng"].map(|name| fs::read(folder.path(name)).unwrap());
+    assert_eq!(folder.files(), ["film.apng", "film.gif", "film.mp4", "film.webp"]);
+    let [gif, apng, webp] = ["film.gif", "film.apng", "film.webp"].map(|name| fs::read(folder.path(name)).unwrap());
+    assert_eq!(webp.windows(4).filter(|bytes| bytes == b"ANMF").count(), 4);
     // Graphic control extensions; frame controls.
     assert_eq!(gif.windows(3).filter(|bytes| bytes == b"\x21\xf9\x04").count(), 4);
     assert_eq!(apng.windows(4).filter(|bytes| bytes == b"fcTL").count(), 4);
+    // Without several frames it is a picture.
+    folder.good(&format!("{LINE} -o still.webp"));
+    folder.good(&format!("{LINE} -o still.png"));
+    folder.good("compare still.webp still.png");
     // The first frame is what shows only PNG shows.
     fs::rename(folder.path("film.apng"), folder.path("film.png")).unwrap();
     folder.good(&format!("{LINE} -o one.png"));
@@ -66,19 +73,155 @@ fn a_film_that_was_killed_goes_on_to_the_same_bytes() {
 #[test]
 fn an_interrupted_film_says_where_its_frames_are_and_leaves_no_half_of_itself() {
     let folder = Folder::new();
-    let mut command = folder.command("render ball.json --size 120x80 --samples 100000 -o film.gif");
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let log = interrupted(&folder, "render ball.json --size 120x80 --samples 100000 -o film.gif");
+    assert!(log.contains("the work so far is in `film.gif.frames`"), "{log}");
+    assert_eq!(folder.files(), ["film.gif.frames"]);
+}
+
+/// Starts a film, interrupts it in its first frame, and says what it said.
+fn interrupted(folder: &Folder, line: &str) -> String {
+    let mut command = folder.command(&format!("{line} --progress json"));
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    let mut log = String::new();
+    while !log.contains("\"progress\"") {
+        assert!(lines.read_line(&mut log).unwrap() > 0, "it ended: {log}");
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    lines.read_to_string(&mut log).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{log}");
+    log
+}
+
+#[test]
+fn a_frame_under_way_goes_on_too() {
+    let folder = Folder::new();
+    let line = "render ball.json --size 160x120 --frames 0..1 --samples 20000 --threads 1 -o film.apng";
+    let log = interrupted(&folder, line);
+    let [start, progress] = ["start", "progress"].map(|event| {
+        let line = log.lines().find(|line| line.contains(&format!("\"{event}\""))).unwrap();
+        serde_json::from_str::<serde_json::Value>(line).unwrap()
+    });
+    // One frame is a picture: there is nothing more to say.
+    assert!(start["frame"].is_null() && progress["film_eta_seconds"].is_null(), "{log}");
+    let kept = folder.path("film.apng.frames/frame_0000.jfilm");
+    let samples = fs::metadata(&kept).unwrap().len();
+    assert!(samples > 0);
+    // Another scene's work is no mistake: it is begun anew.
+    let few = line.replace("20000", "2");
+    folder.good(&few);
+    assert_eq!(folder.files(), ["film.apng"]);
+    interrupted(&folder, line);
+    let again = interrupted(&folder, line);
+    assert!(again.contains("frame_0000.jfilm: ") && again.contains("% is there, going on"), "{again}");
+}
+
+#[test]
+fn progress_is_that_of_the_whole_film() {
+    let folder = Folder::new();
+    let log = interrupted(&folder, "render ball.json --size 160x120 --samples 20000 -o film.apng");
+    let line = log.lines().find(|line| line.contains("\"progress\"")).unwrap();
+    let progress: serde_json::Value = serde_json::from_str(line).unwrap();
+    assert_eq!((&progress["frame"], &progress["frames"]), (&1.into(), &4.into()));
+    let [one, all, eta, film_eta] =
+        ["fraction", "film_fraction", "eta_seconds", "film_eta_seconds"].map(|key| progress[key].as_f64().unwrap());
+    assert!((one / 4.0 - all).abs() < 1e-9 && film_eta > 3.0 * eta, "{progress}");
+}
+
+#[test]
+fn shards_of_a_film_fill_its_folder_together() {
+    let folder = Folder::new();
+    folder.good(&format!("{LINE} -o straight.apng"));
+    let shards = [0, 1].map(|shard| {
+        let line = format!("{LINE} -o film.apng --shard {shard}/2");
+        folder.command(&line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    });
+    for (number, shard) in shards.into_iter().enumerate() {
+        let run = Run::of(shard.wait_with_output().unwrap());
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+        let said =
+            format!("film.apng.frames: 2 frames of shard {number}/2; the same command without --shard makes the film");
+        assert_eq!(run.stdout.trim(), said);
+    }
+    let frames = fs::read_dir(folder.path("film.apng.frames")).unwrap();
+    let times: Vec<_> = frames.map(|frame| frame.unwrap().metadata().unwrap().modified().unwrap()).collect();
+    assert!(!folder.path("film.apng").exists());
+    let run = folder.run(&format!("{LINE} -o film.apng --progress json"));
+    assert!(!run.stderr.contains("progress"), "all frames are there: {}", run.stderr);
+    assert_eq!((times.len(), folder.files().len()), (5, 2), "four frames and the lock; then two films");
+    assert!(fs::read(folder.path("film.apng")).unwrap() == fs::read(folder.path("straight.apng")).unwrap());
+}
+
+#[test]
+fn a_film_is_made_by_one_process_at_a_time() {
+    let folder = Folder::new();
+    let line = "render ball.json --size 160x120 --samples 100000 -o film.apng";
+    let mut first = folder.command(line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let start = Instant::now();
-    // The first frame's file is there, under its hidden name.
-    while fs::read_dir(folder.path("film.gif.frames")).map_or(0, Iterator::count) == 0 {
+    while !folder.path("film.apng.frames/.lock").exists() {
         assert!(start.elapsed() < Duration::from_secs(60), "nothing was begun");
         sleep(Duration::from_millis(5));
     }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let run = Run::of(child.wait_with_output().unwrap());
-    assert_eq!((run.status, run.stdout.as_str()), (130, ""));
-    assert!(run.stderr.contains("the work so far is in `film.gif.frames`"), "{}", run.stderr);
-    assert_eq!(folder.files(), ["film.gif.frames"]);
+    sleep(Duration::from_millis(50));
+    for flags in ["", " --shard 1/2"] {
+        let message = folder.bad(&format!("{line}{flags}"), 3);
+        assert!(message.contains("other processes are at work in `film.apng.frames`"), "{message}");
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // The lock went with it.
+    folder.good(&line.replace("100000", "1"));
+    assert_eq!(folder.files(), ["film.apng"]);
+}
+
+#[test]
+fn numbered_pictures_that_are_there_are_left() {
+    let folder = Folder::new();
+    for ending in ["png", "exr", "hdr"] {
+        let line = format!("{LINE} --frames 0..3 -o f_#.{ending}");
+        folder.good(&format!("{line} --shard 1/2"));
+        let time = || fs::metadata(folder.path(&format!("f_1.{ending}"))).unwrap().modified().unwrap();
+        let before = time();
+        let run = folder.good(&line);
+        let left = format!("f_1.{ending}: is there already, made by the same command");
+        assert_eq!((run.stdout.lines().count(), time()), (3, before));
+        assert_eq!(run.stdout.lines().nth(1), Some(left.as_str()));
+        folder.good(&format!("{line} --seed 2"));
+        assert_ne!(time(), before, "another command makes it anew");
+    }
+    let again = || {
+        folder.good(&format!("{LINE} --frames 0..2 -o f_#.png"));
+        fs::read(folder.path("f_1.png")).unwrap()
+    };
+    let plain = again();
+    folder.good(&format!("{LINE} --frame 1 -o one.png"));
+    assert!(plain == fs::read(folder.path("one.png")).unwrap(), "equal pictures are equal files");
+    // The scene's tone is no part of its fingerprint, but it shows.
+    let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
+    let bright = scene.replacen('{', r#"{"tone": {"exposure_stops": 1},"#, 1);
+    fs::write(folder.path("ball.json"), bright).unwrap();
+    assert!(again() != plain);
+    fs::write(folder.path("ball.json"), scene).unwrap();
+    assert!(again() == plain);
+}
+
+#[test]
+fn a_mesh_is_read_once_for_all_frames() {
+    let folder = Folder::new();
+    let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
+    let mesh = r#"{"shape": {"mesh": {"file": "three.obj"}}, "transform": [{"translate": ["=frame / 9", 0, 1]}]},"#;
+    fs::write(folder.path("meshes.json"), scene.replace("{\"shape\": \"plane\"},", &format!("{mesh}{mesh}"))).unwrap();
+    fs::write(folder.path("three.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let line = "render meshes.json --size 160x90 --samples 200 --threads 1 -o film.apng";
+    let mut child = folder.command(line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = Instant::now();
+    while !folder.path("film.apng.frames/frame_0000.png").exists() {
+        assert!(start.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(), "no first frame");
+        sleep(Duration::from_millis(1));
+    }
+    fs::remove_file(folder.path("three.obj")).unwrap();
+    assert!(!folder.path("film.apng").exists(), "it was too fast for this test");
+    assert!(child.wait().unwrap().success(), "the other frames need no file");
 }
 
 #[test]
@@ -86,11 +229,19 @@ fn what_a_film_cannot_be_is_said() {
     let folder = Folder::new();
     for (flags, word) in [
         ("-o f.gif --bits 16", "--bits is for pictures"),
-        ("-o f.gif --quality 50", "--quality is for pictures"),
+        ("-o f.gif --quality 50", "--quality is for JPEG and MP4 files"),
         ("-o f.gif --frame 1", "--frame is for pictures"),
         ("-o f.gif --at 1", "--at is for pictures"),
-        ("-o f.apng --shard 0/2", "frame_####.png"),
-        ("-o f.png --fps 10", "--fps is for moving pictures: .apng .gif"),
+        ("-o f.webp --fps 5 --quality 50", "--quality is for JPEG and MP4 files"),
+        ("-o f.mp4 --plays 2", "--plays: how often"),
+        ("-o f.gif --fps 101", "0.01 to 100 can"),
+        ("-o f.gif --size 65536x1", "65536 × 1"),
+        ("-o f.webp --frames 0..2 --size 2x16384", "1 to 16383"),
+        ("-o f.mp4 --size 15x16", "16 to 65535"),
+        ("-o f.mp4 --crop 0,0,8,8", "8 × 8"),
+        ("-o f.apng --frames 0..4000000000", "more than the limit"),
+        ("-o f.png --shard 0/2", "--frames"),
+        ("-o f.png --fps 10", "--fps is for moving pictures: .apng .gif .mp4 .webp"),
         ("-o f.png --plays 1", "--plays is for moving pictures"),
         ("-o - --format gif", "a film needs a file"),
         ("-o f.gif --fps 0", "a number from 0.01 to 1000"),

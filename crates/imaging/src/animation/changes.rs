@@ -22,12 +22,19 @@ pub struct Frames {
     quantizer: Quantizer,
     now: Vec<u8>,
     before: Vec<u8>,
+    /// What the corner's place is a multiple of.
+    step: u32,
 }
 
 impl Frames {
     /// None yet.
     pub fn new(width: u32, quantizer: Quantizer) -> Self {
-        Self { width, quantizer, now: Vec::new(), before: Vec::new() }
+        Self { width, quantizer, now: Vec::new(), before: Vec::new(), step: 1 }
+    }
+
+    /// With parts that begin at even columns and rows only.
+    pub fn with_even_corners(self) -> Self {
+        Self { step: 2, ..self }
     }
 
     /// Takes the next frame; which part of it is new, and that part's bytes, three a pixel.
@@ -56,6 +63,7 @@ impl Frames {
             (left, right, top, bottom) = (left.min(first), right.max(last + 1), top.min(y), y + 1);
         }
         if left < right {
+            let (left, top) = (left - left % self.step, top - top % self.step);
             return Part { x: left, y: top, width: right - left, height: bottom - top };
         }
         Part { x: 0, y: 0, width: 1, height: 1 }

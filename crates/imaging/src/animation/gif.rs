@@ -3,8 +3,10 @@
 //! stands still where the picture does.
 
 use super::changes::{Frames, Part};
+use super::pace::ticks_until;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
+use crate::look::threshold;
 use crate::output::Destination;
 use crate::tone::Quantizer;
 use color_quant::NeuQuant;
@@ -52,10 +54,10 @@ impl Writer {
     /// Hundredths of a second until the next frame. They are rounded from the start, so that the whole takes as long as
     /// it should.
     fn delay(&mut self) -> u16 {
-        let at = |frame: u32| (f64::from(frame) * 100.0 / self.frames_per_second).round();
+        let at = |frame: u32| ticks_until(frame, 100.0, self.frames_per_second);
         let delay = at(self.written + 1) - at(self.written);
         self.written += 1;
-        delay.min(f64::from(u16::MAX)) as u16
+        delay.min(u64::from(u16::MAX)) as u16
     }
 }
 
@@ -109,7 +111,7 @@ fn learned(part: &Part, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
     // Neighbours mostly have one colour.
     let mut last = ([0; 3], network.index_of(&[0, 0, 0, 255]) as u8);
     for (i, pixel) in pixels.iter().enumerate() {
-        let shift = threshold(part.x as usize + i % columns, part.y as usize + i / columns);
+        let shift = threshold(part.x as usize + i % columns, part.y as usize + i / columns, SPAN);
         let color = pixel.map(|level| (i32::from(level) + shift).clamp(0, 255) as u8);
         if color != last.0 {
             last = (color, network.index_of(&[color[0], color[1], color[2], 255]) as u8);
@@ -117,14 +119,6 @@ fn learned(part: &Part, bytes: &[u8]) -> (Vec<u8>, Vec<u8>) {
         indices.push(last.1);
     }
     (network.color_map_rgb(), indices)
-}
-
-/// What the pattern adds to a pixel's levels.
-fn threshold(x: usize, y: usize) -> i32 {
-    // The bits of x ^ y and y, interleaved and reversed: Bayer's matrix of 8 × 8.
-    let (a, b) = (x ^ y, y);
-    let rank = (0..3).fold(0, |rank, bit| rank << 2 | (a >> bit & 1) << 1 | (b >> bit & 1));
-    (rank as i32 * 2 - 63) * SPAN / 126
 }
 
 fn failed(place: &str, error: EncodingError) -> ImageError {

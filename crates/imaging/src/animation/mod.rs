@@ -2,18 +2,24 @@
 
 mod apng;
 mod changes;
+mod check;
 mod gif;
+#[cfg(feature = "av1")]
+mod mp4;
+mod pace;
+mod webp;
+
+pub use check::PACES;
 
 use crate::output::{self, Destination};
 use crate::tone::Tone;
 use crate::{ImageError, atomic};
 use juggler_math::Rgb;
 use std::fmt;
-use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Frames a second that can be written.
-pub const PACES: RangeInclusive<f64> = 0.01..=1000.0;
+/// Quality where nobody chooses it: see docs/benchmarks.md for what it costs and gives.
+pub const DEFAULT_QUALITY: u8 = 80;
 
 /// A file format for moving pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,16 +28,27 @@ pub enum AnimationFormat {
     Apng,
     /// GIF: 256 colours a frame, times in hundredths of a second.
     Gif,
+    /// MP4 with AV1: small, for video players and pages; something is lost.
+    #[cfg(feature = "av1")]
+    Mp4,
+    /// WebP with several frames, 8 bits, lossless, times in thousandths of a second.
+    Webp,
 }
 
 impl AnimationFormat {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Apng, Self::Gif];
+    pub const ALL: &[Self] = &[
+        Self::Apng,
+        Self::Gif,
+        #[cfg(feature = "av1")]
+        Self::Mp4,
+        Self::Webp,
+    ];
 
     /// By the file's ending, whatever its case.
     pub fn from_path(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        Self::ALL.into_iter().find(|format| format.ending() == ending)
+        Self::ALL.iter().copied().find(|format| format.ending() == ending)
     }
 
     /// The usual ending, without a dot.
@@ -39,15 +56,15 @@ impl AnimationFormat {
         match self {
             Self::Apng => "apng",
             Self::Gif => "gif",
+            #[cfg(feature = "av1")]
+            Self::Mp4 => "mp4",
+            Self::Webp => "webp",
         }
     }
 
-    /// The longest side that a file can have.
-    pub fn longest_side(self) -> u32 {
-        match self {
-            Self::Apng => i32::MAX as u32,
-            Self::Gif => u32::from(u16::MAX),
-        }
+    /// All endings, for messages.
+    pub fn endings() -> String {
+        Self::ALL.iter().map(|format| format!(".{}", format.ending())).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -56,6 +73,9 @@ impl fmt::Display for AnimationFormat {
         f.write_str(match self {
             Self::Apng => "APNG",
             Self::Gif => "GIF",
+            #[cfg(feature = "av1")]
+            Self::Mp4 => "MP4",
+            Self::Webp => "WebP",
         })
     }
 }
@@ -73,8 +93,10 @@ pub struct AnimationHeader {
     pub frames: u32,
     /// Frames a second, above 0.
     pub frames_per_second: f64,
-    /// How often it is shown; 0: over and over.
+    /// How often it is shown; 0: over and over. MP4 leaves that to who shows it.
     pub plays: u16,
+    /// From small, 1, to good, 100; where nothing is lost, it says nothing.
+    pub quality: u8,
 }
 
 /// Takes frames in order.
@@ -93,10 +115,13 @@ pub fn animation_writer(
     header: &AnimationHeader,
 ) -> Result<Box<dyn FrameWriter>, ImageError> {
     let place = destination.name().to_owned();
-    check(format, &place, header)?;
+    format.check(&place, header)?;
     let inner: Box<dyn FrameWriter> = match format {
         AnimationFormat::Apng => Box::new(apng::Writer::new(destination, header)?),
         AnimationFormat::Gif => Box::new(gif::Writer::new(destination, header)?),
+        #[cfg(feature = "av1")]
+        AnimationFormat::Mp4 => Box::new(mp4::Writer::new(destination, header)?),
+        AnimationFormat::Webp => Box::new(webp::Writer::new(destination, header)?),
     };
     let pixels = u64::from(header.width) * u64::from(header.height);
     Ok(Box::new(Counted { inner, place, pixels, left: header.frames }))
@@ -116,24 +141,6 @@ pub fn create_animation(
 
 fn refused(place: &str, message: impl Into<String>) -> ImageError {
     ImageError::Animation { place: place.to_owned(), message: message.into() }
-}
-
-fn check(format: AnimationFormat, place: &str, header: &AnimationHeader) -> Result<(), ImageError> {
-    let AnimationHeader { width, height, frames, frames_per_second, .. } = *header;
-    let most = format.longest_side();
-    if !(1..=most).contains(&width) || !(1..=most).contains(&height) {
-        let message = format!("its frames cannot be {width} × {height} pixels: each side is 1 to {most}");
-        return Err(refused(place, message));
-    }
-    if frames == 0 {
-        return Err(refused(place, "there are no frames to write"));
-    }
-    if !PACES.contains(&frames_per_second) {
-        let message =
-            format!("{frames_per_second} frames a second cannot be written: {} to {} can", PACES.start(), PACES.end());
-        return Err(refused(place, message));
-    }
-    Ok(())
 }
 
 /// Sees to it that the formats' writers get whole frames, and neither too many nor too few.

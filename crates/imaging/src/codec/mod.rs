@@ -7,6 +7,7 @@ mod pfm;
 mod png;
 mod webp;
 
+use crate::look::{self, Look};
 use crate::output::Destination;
 use crate::tone::{Curve, Srgb, Tone};
 use crate::{Format, ImageError, Limits};
@@ -59,6 +60,8 @@ pub struct Options {
     pub exr_depth: SampleDepth,
     /// Packing of an EXR; nothing is lost by any.
     pub exr_compression: ExrCompression,
+    /// What is done with the levels, where there are levels.
+    pub look: Look,
 }
 
 impl Default for Options {
@@ -68,6 +71,7 @@ impl Default for Options {
             jpeg_quality: 95,
             exr_depth: SampleDepth::Float,
             exr_compression: ExrCompression::Rle,
+            look: Look::Plain,
         }
     }
 }
@@ -95,15 +99,23 @@ pub enum ExrCompression {
 /// A writer for a format. Wrong sizes are refused here, before anything is written.
 pub fn writer(format: Format, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
-    let inner: Box<dyn RowWriter> = match format {
+    let inner = if format.has_looks() {
+        look::Writer::before(header, |header| encoder(format, destination, header))?
+    } else {
+        encoder(format, destination, header)?
+    };
+    Ok(Box::new(Counted { inner, width: u64::from(header.width), left: header.pixels() }))
+}
+
+fn encoder(format: Format, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
+    Ok(match format {
         Format::Png => Box::new(png::Writer::new(destination, header)?),
         Format::Jpeg => Box::new(jpeg::Writer::new(destination, header)),
         Format::Exr => Box::new(exr::Writer::new(destination, header)?),
         Format::Hdr => Box::new(hdr::Writer::new(destination, header)?),
         Format::Webp => Box::new(webp::Writer::new(destination, header)),
         Format::Pfm => Box::new(pfm::Writer::new(destination, header)?),
-    };
-    Ok(Box::new(Counted { inner, width: u64::from(header.width), left: header.pixels() }))
+    })
 }
 
 /// Sees to it that the formats' writers get whole rows, and neither too many nor too few.

@@ -96,14 +96,24 @@ fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
     counts::from_text(counts, tiles).ok_or_else(other)
 }
 
+/// Clears a checkpoint away that is of no use any more.
+pub fn forget(file: &str) {
+    for file in [file.to_owned(), format!("{file}.previous")] {
+        // It may never have been written.
+        let _ = std::fs::remove_file(file);
+    }
+}
+
 impl Exposure<'_> {
     fn run(mut self, interrupts: &Interrupts) -> Result<Outcome, Failure> {
         let mut kept = self.take.shot.checkpoint.as_deref().map(|file| self.open(file)).transpose()?;
+        let is_own = self.session.plan.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_own);
         let (control, start) = (Control::default(), Instant::now());
         let result = self.expose(&control, interrupts, kept.as_mut());
         let render = start.elapsed();
         self.description.finished = result.is_ok() && self.take.picture.is_finished(&self.film);
-        if let Some(kept) = &mut kept {
+        // A film's frame that is finished is kept as a picture.
+        if let Some(kept) = kept.as_mut().filter(|_| !is_own || result.is_err()) {
             kept.save(&self.description, &self.film)?;
         }
         if result.is_err() {
@@ -116,11 +126,24 @@ impl Exposure<'_> {
         if let Some(kept) = kept {
             kept.close();
         }
+        if is_own {
+            self.take.shot.checkpoint.as_deref().into_iter().for_each(forget);
+        }
         Ok(Outcome { film, rays: control.rays(), render, write: write.elapsed() })
     }
 
-    /// Opens the checkpoint and takes over what it holds.
+    /// Opens the checkpoint and takes over what it holds. One of our own that does not fit is of another scene: it goes.
     fn open(&self, file: &str) -> Result<Checkpoint, Failure> {
+        match self.resume(file) {
+            Err(_) if self.session.plan.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_own) => {
+                forget(file);
+                self.resume(file)
+            }
+            other => other,
+        }
+    }
+
+    fn resume(&self, file: &str) -> Result<Checkpoint, Failure> {
         let (kept, found) = Checkpoint::open(Path::new(file))?;
         if let Some(damage) = found.damage {
             console::say(&format!("warning: {damage}; going on from the one before it"));
@@ -143,8 +166,9 @@ impl Exposure<'_> {
     fn expose(&self, control: &Control, interrupts: &Interrupts, kept: Option<&mut Checkpoint>) -> Result<(), Stopped> {
         let Session { plan, reporter } = self.session;
         let goal = self.film.goal().saturating_sub(self.film.samples());
-        reporter.start(&self.take.shot.output, self.take.picture.size(), self.take.picture.samples());
-        let watch = Watch { reporter, interrupts, control, samples: goal, time: plan.time };
+        let course = self.take.moment.course;
+        reporter.start(&self.take.shot.output, self.take.picture.size(), self.take.picture.samples(), course);
+        let watch = Watch { reporter, interrupts, control, samples: goal, time: plan.time, course };
         let work = || self.take.picture.expose(&self.film, control);
         let result = watched(&watch, || match (kept, &plan.checkpoint) {
             (Some(kept), Some(Keeping { every, .. })) => self.keeping(kept, *every, work),

@@ -11,10 +11,14 @@ use juggler::memory::{Effort, Memory, Part, sum};
 use juggler::scene::Scene;
 use juggler::tracer::render::BAND_PIXELS;
 
+/// Samples of a pixel from which on a film's frame is kept while it is under way: that takes as long as a third of a sample, and
+/// what has fewer is soon begun anew.
+const WORTH_KEEPING: u32 = 8;
+
 /// What a picture of a plan takes, before its files are read.
 pub fn of(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<Memory, Failure> {
     let mut memory = Memory::of(scene, &plan.settings)?;
-    if plan.needs_film() {
+    if plan.needs_film(shot) {
         // Numbers of samples may come from a file: then all the film may get that many.
         let (crop, shards) = if plan.samples_from.is_some() { (None, 1) } else { (plan.cut.crop, shot.shard.count) };
         memory = memory.on_film(crop, plan.cut.samples.clone(), shards);
@@ -27,6 +31,23 @@ pub fn of(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<Memory, Failure> {
         memory = memory.and(format!("the {format} file"), file);
     }
     Ok(memory)
+}
+
+/// What a picture takes and with which effort it fits. A film's frame that is not worth a checkpoint, or for whose
+/// checkpoint there is no room, is made without one.
+pub fn fitting(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<(Memory, Effort, Shot), Failure> {
+    let is_own = plan.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_own);
+    let without = Shot { checkpoint: shot.checkpoint.clone().filter(|_| !is_own), ..shot.clone() };
+    if plan.settings.samples_of(scene) >= WORTH_KEEPING {
+        let memory = of(plan, scene, shot)?;
+        match effort(plan, &memory, plan.threads) {
+            Err(_) if shot.checkpoint != without.checkpoint => {}
+            effort => return Ok((memory, effort?, shot.clone())),
+        }
+    }
+    let memory = of(plan, scene, &without)?;
+    let effort = effort(plan, &memory, plan.threads)?;
+    Ok((memory, effort, without))
 }
 
 /// The threads and bands with which a render fits.

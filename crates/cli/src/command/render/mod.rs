@@ -3,6 +3,7 @@
 mod film;
 mod memory;
 mod reel;
+mod studio;
 
 use crate::args::RenderArgs;
 use crate::console;
@@ -10,19 +11,21 @@ use crate::failure::Failure;
 use crate::format::{amount, counted, duration};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{Plan, Product, Shot};
-use crate::progress::{Reporter, Watch, watched};
+use crate::plan::{Plan, Product, Reel, Shard, Shot};
+use crate::progress::{Course, Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
-use juggler::imaging::{self, Format, Header, RowWriter};
-use juggler::memory::{Effort, Memory};
+use juggler::imaging::{self, AnimationHeader, Format, Header, RowWriter, Tone};
+use juggler::memory::Effort;
 use juggler::scene::Scene;
+use juggler::tracer::film::Rect;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
-use reel::Encoder;
+use reel::{Encoder, Folder, Use};
 use std::path::Path;
 use std::time::{Duration, Instant};
+use studio::Studio;
 
 /// Shown after the help.
 pub const EXAMPLES: &str = "\
@@ -30,7 +33,8 @@ Examples:
   juggler render juggler                                     the built-in scene, into juggler.png
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
   juggler render juggler --frames 0..30 -o 'frame_####.png'
-  juggler render juggler -o juggler.gif                      all frames as a film
+  juggler render juggler -o juggler.mp4                      all frames as a film, also .webp .apng .gif
+  juggler render juggler -o juggler.mp4 --shard 0/3          a third of its frames; without --shard they become the film
   juggler render scene.json -o - | display                   the picture to another program
   juggler render scene.json --noise 0.02                     until it is good enough
   juggler render scene.json --checkpoint scene.jfilm         the same command again goes on where it ended
@@ -52,14 +56,11 @@ struct Session {
     reporter: Reporter,
 }
 
-/// A picture whose world is to be built.
-struct Ready<'t> {
-    scene: &'t Scene,
-    shot: &'t Shot,
-    memory: Memory,
-    effort: Effort,
-    load: Duration,
+/// When a picture was begun, and where it stands among others.
+#[derive(Clone, Copy)]
+struct Moment {
     start: Instant,
+    course: Option<Course>,
 }
 
 /// A picture on its way.
@@ -71,46 +72,74 @@ struct Take<'t> {
     expected: u64,
     load: Duration,
     build: Duration,
-    start: Instant,
+    moment: Moment,
 }
 
 impl Session {
     fn all(self, start: Instant) -> Result<(), Failure> {
         let scene = source::load(&self.plan.scene, self.plan.max_memory)?;
         let animation = scene.description.animation;
-        // Watched once there is something to clean up; until then a signal ends the program as it always does.
-        let mut interrupts = None;
-        let mut start = start;
+        let header = self.plan.reel.as_ref().map(|reel| self.header(reel, &scene)).transpose()?;
         let shots = self.plan.shots(animation.frames, animation.frames_per_second)?;
-        let began = start;
-        let encoder = self.plan.reel.as_ref();
-        let encoder = encoder.map(|reel| Encoder::start(reel, shots.len(), animation.frames_per_second));
-        let mut encoder = encoder.transpose()?;
-        for shot in &shots {
-            self.one(&scene, shot, start, &mut interrupts).map_err(|failure| match &self.plan.reel {
-                Some(reel) => failure.keeping(Some(reel.folder())),
-                None => failure,
-            })?;
-            if encoder.as_mut().is_some_and(|encoder| !encoder.take(&shot.output)) {
-                break;
-            }
-            start = Instant::now();
+        let Some((reel, header)) = self.plan.reel.as_ref().zip(header) else {
+            return self.frames(&scene, &shots, start, |_| true);
+        };
+        if self.plan.shard != Shard::WHOLE {
+            let _folder = Folder::open(&reel.folder(), Use::Shared)?;
+            self.frames(&scene, &shots, start, |_| true).map_err(|failure| failure.keeping(Some(reel.folder())))?;
+            return self.tell_frames(reel, shots.len());
         }
-        let Some((encoder, reel)) = encoder.zip(self.plan.reel.as_ref()) else { return Ok(()) };
+        let mut encoder = Encoder::start(reel, header)?;
+        let frames = self.frames(&scene, &shots, start, |shot| encoder.take(&shot.output));
+        frames.map_err(|failure| failure.keeping(Some(reel.folder())))?;
         encoder.finish()?;
-        if self.plan.quiet {
-            return Ok(());
-        }
-        self.tell(&format!("{}: {}, {}", reel.file, counted(shots.len() as u128, "frame"), duration(began.elapsed())))
+        self.tell_film(reel, shots.len(), start)
     }
 
+    /// What the film says besides its frames. What its format cannot take is refused here, before the first is rendered.
+    fn header(&self, reel: &Reel, scene: &Scene) -> Result<AnimationHeader, Failure> {
+        let animation = scene.description.animation;
+        let Rect { width, height, .. } = self.plan.settings.region(self.plan.settings.size_of(scene))?;
+        let frames = self.plan.frames(animation.frames).len();
+        // Whether there are any is told with the pictures.
+        let header = reel.header([width, height], frames.max(1), animation.frames_per_second);
+        reel.check(&header)?;
+        Ok(header)
+    }
+
+    /// Makes one picture after the other; `done` says whether it goes on.
+    fn frames(
+        &self,
+        scene: &Scene,
+        shots: &[Shot],
+        start: Instant,
+        mut done: impl FnMut(&Shot) -> bool,
+    ) -> Result<(), Failure> {
+        // Watched once there is something to clean up; until then a signal ends the program as it always does.
+        let mut interrupts = None;
+        let (mut studio, mut course, mut start) = (Studio::default(), Course::new(shots.len()), start);
+        for shot in shots {
+            let course_now = Some(course).filter(|course| course.of > 1);
+            let is_rendered =
+                self.one(scene, shot, &mut studio, Moment { start, course: course_now }, &mut interrupts)?;
+            if !done(shot) {
+                break;
+            }
+            course = course.after(is_rendered.then(|| start.elapsed()));
+            start = Instant::now();
+        }
+        Ok(())
+    }
+
+    /// Makes a picture; `false` when it was there already.
     fn one(
         &self,
         scene: &Scene,
         shot: &Shot,
-        start: Instant,
+        studio: &mut Studio,
+        moment: Moment,
         interrupts: &mut Option<Interrupts>,
-    ) -> Result<(), Failure> {
+    ) -> Result<bool, Failure> {
         let moved;
         let scene = if shot.frame == 0.0 {
             scene
@@ -118,44 +147,46 @@ impl Session {
             moved = scene.at_frame(shot.frame)?;
             &moved
         };
-        let load = start.elapsed();
-        let memory = memory::of(&self.plan, scene, shot)?;
-        let effort = memory::effort(&self.plan, &memory, self.plan.threads)?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(effort.threads).build();
-        let pool = pool.map_err(|error| Failure::System(format!("cannot start threads: {error}")))?;
-        let ready = Ready { scene, shot, memory, effort, load, start };
-        pool.install(|| self.picture(ready, interrupts))
-    }
-
-    fn picture(&self, ready: Ready, interrupts: &mut Option<Interrupts>) -> Result<(), Failure> {
-        let Ready { scene, shot, memory, effort, load, start } = ready;
+        let load = moment.start.elapsed();
+        let (memory, effort, shot) = memory::fitting(&self.plan, scene, shot)?;
+        studio.gather(effort.threads)?;
         let built = Instant::now();
-        let picture = Picture::new(scene, &self.plan.settings)?;
+        let picture = studio.picture(&self.plan, scene)?;
         let expected = memory.bytes(&effort);
         // The threads are there; now that the world stands, larger bands may fit.
         let Effort { band_pixels, .. } = memory::effort(&self.plan, &memory.of_built(&picture), effort.threads)?;
         let picture = picture.with_bands(band_pixels);
         self.warn(&picture);
-        let take = Take { shot, picture: &picture, effort, expected, load, build: built.elapsed(), start };
-        let mut header = picture.header(self.plan.options());
-        header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, shot)));
-        if self.plan.reel.is_some() {
-            header.metadata.push(("Tone".to_owned(), format!("{:?}", header.tone)));
-            if reel::is_made(&shot.output, &header) {
-                return Ok(());
-            }
+        let build = built.elapsed();
+        let take = Take { shot: &shot, picture: &picture, effort, expected, load, build, moment };
+        let is_rendered = studio.on_threads(|| self.picture(&take, interrupts))?;
+        studio.keep(&self.plan, scene, picture)?;
+        Ok(is_rendered)
+    }
+
+    fn picture(&self, take: &Take, interrupts: &mut Option<Interrupts>) -> Result<bool, Failure> {
+        let mut header = take.picture.header(self.plan.options());
+        header.metadata.push(("Command".to_owned(), reproduce::command(&self.plan, take.shot)));
+        if header.tone != Tone::default() {
+            // The scene's own tone is no part of its fingerprint.
+            let tone = serde_json::to_string(&header.tone).unwrap_or_default();
+            header.metadata.push((reel::TONE.to_owned(), tone));
+        }
+        if self.plan.leaves_what_is_there() && reel::is_made(take.shot, &header) {
+            self.tell_left(take.shot)?;
+            return Ok(false);
         }
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,
             none => none.insert(Interrupts::watch()?),
         };
         let outcome = match self.plan.product {
-            Product::Picture(encoding) if !self.plan.needs_film() => {
-                self.render(&take, encoding.format, &header, interrupts)?
+            Product::Picture(encoding) if !self.plan.needs_film(take.shot) => {
+                self.render(take, encoding.format, &header, interrupts)?
             }
-            _ => film::render(self, &take, header, interrupts)?,
+            _ => film::render(self, take, header, interrupts)?,
         };
-        self.report(&take, &outcome)
+        self.report(take, &outcome).map(|()| true)
     }
 
     fn warn(&self, picture: &Picture) {
@@ -176,9 +207,10 @@ impl Session {
         let Take { shot, picture, .. } = take;
         let control = Control::default();
         let writer = self.writer(format, &shot.output, header)?;
-        self.reporter.start(&shot.output, picture.size(), picture.samples());
+        let course = take.moment.course;
+        self.reporter.start(&shot.output, picture.size(), picture.samples(), course);
         let samples = picture.total_samples();
-        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, samples, time: None };
+        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, samples, time: None, course };
         watched(&watch, || picture.write(writer, &control)).map_err(|error| {
             self.reporter.clear();
             interrupts.caught().unwrap_or_else(|| error.into())
@@ -194,8 +226,8 @@ impl Session {
 
     /// Says what was done: to programs, to a file, to people.
     fn report(&self, take: &Take, outcome: &Outcome) -> Result<(), Failure> {
-        let Take { shot, picture, start, .. } = take;
-        let total = start.elapsed();
+        let Take { shot, picture, moment, .. } = take;
+        let total = moment.start.elapsed();
         let seconds = Seconds {
             load: take.load.as_secs_f64(),
             build: take.build.as_secs_f64(),
@@ -223,6 +255,32 @@ impl Session {
         let rate = amount(rays_per_second(&outcome.rays, seconds.render));
         let took = duration(total);
         self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s", shot.output))
+    }
+
+    /// Says which frames are there for a film to come.
+    fn tell_frames(&self, reel: &Reel, frames: usize) -> Result<(), Failure> {
+        let Shard { index, count } = self.plan.shard;
+        let (folder, frames) = (reel.folder(), counted(frames as u128, "frame"));
+        self.tell_unless_quiet(&format!(
+            "{folder}: {frames} of shard {index}/{count}; the same command without --shard makes the film"
+        ))
+    }
+
+    fn tell_film(&self, reel: &Reel, frames: usize, start: Instant) -> Result<(), Failure> {
+        let took = duration(start.elapsed());
+        self.tell_unless_quiet(&format!("{}: {}, {took}", reel.file, counted(frames as u128, "frame")))
+    }
+
+    /// Says that a picture was there; of a film's frames nobody wants to know.
+    fn tell_left(&self, shot: &Shot) -> Result<(), Failure> {
+        if self.plan.reel.is_some() {
+            return Ok(());
+        }
+        self.tell_unless_quiet(&format!("{}: is there already, made by the same command", shot.output))
+    }
+
+    fn tell_unless_quiet(&self, line: &str) -> Result<(), Failure> {
+        if self.plan.quiet { Ok(()) } else { self.tell(line) }
     }
 
     /// A line about what was done goes where no picture and no statistics go.

@@ -1,0 +1,47 @@
+//! Levels of AV1 (AV1 Bitstream & Decoding Process, A.3): what a decoder must be able to do.
+
+/// The level that promises nothing.
+pub(super) const ANY: u8 = 31;
+
+/// Number, pixels, width, height and pixels a second of each level.
+const LEVELS: [(u8, u64, u32, u32, u64); 14] = [
+    (0, 147_456, 2048, 1152, 4_423_680),
+    (1, 278_784, 2816, 1584, 8_363_520),
+    (4, 665_856, 4352, 2448, 19_975_680),
+    (5, 1_065_024, 5504, 3096, 31_950_720),
+    (8, 2_359_296, 6144, 3456, 70_778_880),
+    (9, 2_359_296, 6144, 3456, 141_557_760),
+    (12, 8_912_896, 8192, 4352, 267_386_880),
+    (13, 8_912_896, 8192, 4352, 534_773_760),
+    (14, 8_912_896, 8192, 4352, 1_069_547_520),
+    (15, 8_912_896, 8192, 4352, 1_069_547_520),
+    (16, 35_651_584, 16_384, 8704, 1_069_547_520),
+    (17, 35_651_584, 16_384, 8704, 2_139_095_040),
+    (18, 35_651_584, 16_384, 8704, 4_278_190_080),
+    (19, 35_651_584, 16_384, 8704, 4_278_190_080),
+];
+
+/// The least level of such a film, when there is one.
+pub(super) fn least(width: u32, height: u32, frames_per_second: f64) -> Option<u8> {
+    let area = u64::from(width) * u64::from(height);
+    let rate = area as f64 * frames_per_second;
+    let fits = |level: &&(u8, u64, u32, u32, u64)| {
+        let (_, pixels, widest, highest, most) = **level;
+        area <= pixels && width <= widest && height <= highest && rate <= most as f64
+    };
+    LEVELS.iter().find(fits).map(|(level, ..)| *level)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_films_have_their_usual_levels() {
+        assert_eq!(least(1920, 1080, 30.0), Some(8));
+        assert_eq!(least(1920, 1080, 60.0), Some(9));
+        assert_eq!(least(3840, 2160, 60.0), Some(13));
+        assert_eq!(least(320, 200, 30.0), Some(0));
+        assert_eq!(least(20_000, 20_000, 1.0), None);
+    }
+}

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Films as others see them: MP4, WebP, APNG and GIF of one animation shown in a real browser and, where they are installed,
+# looked at by ffprobe and ffmpeg: lengths, sizes, jumps to a moment, colours beside those of the frames as PNG.
+#   tests/films/test.sh PATH/TO/juggler [FOLDER FOR THE FILMS]
+# Needs node, npm (playwright-core, by the lock file of tests/browser) and Chromium: apt-get install -y chromium nodejs npm
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+juggler=$(realpath "${1:?usage: tests/films/test.sh PATH/TO/juggler [FOLDER]}")
+folder=$(realpath -m "${2:-$(mktemp -d)}")
+mkdir -p "$folder"
+
+missing() { echo "error: $1 is missing: apt-get install -y $2" >&2; exit 3; }
+command -v node >/dev/null || missing node nodejs
+command -v npm >/dev/null || missing npm npm
+chromium=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
+[ -n "$chromium" ] || missing Chromium chromium
+
+cd "$here/../browser"
+if [ ! -d node_modules/playwright-core ]; then npm ci --no-audit --no-fund --silent; fi
+exec node "$here/test.mjs" "$juggler" "$chromium" "$folder"
