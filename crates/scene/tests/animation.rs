@@ -362,6 +362,23 @@ fn a_number_of_visibility_is_yes_or_no() {
     assert_ne!(scene("true"), scene("false"));
 }
 
+/// Tracks move what they move while the shutter is open, too; what looks up one time only does not.
+#[test]
+fn tracks_are_seen_by_an_open_shutter() {
+    let moves = |at: &str, shutter: &str| {
+        let text = format!(
+            r#"{{"version": 1, "animation": {{"frames": 8, "frames_per_second": 4}}, "render": {{"shutter": {shutter}}},
+            "objects": [{{"shape": "sphere", "transform": [{{"translate":
+                {{"animate": {{"keys": [[0, [0, 0, 0]], [1, [4, 0, 0]]] {at}}}}}}}]}}]}}"#
+        );
+        let scene = Scene::from_json(text, "a.json").unwrap();
+        assert!(scene.compile().is_ok());
+        scene.fingerprint().parts().contains_key("motion")
+    };
+    assert!(moves("", "[0, 0.5]") && moves(", \"at\": \"=frame / 4\"", "[0, 0.5]"));
+    assert!(!moves("", "[0, 0]") && !moves(", \"at\": 0.5", "[0, 0.5]"));
+}
+
 /// Far more than anybody writes, still in bounded time.
 #[test]
 fn many_keys_and_points_are_read_at_each_frame() {
