@@ -195,6 +195,8 @@ fn things_go_along_paths_at_an_even_speed() {
     }
     assert!(distance(&at("ring", 0.3), &at("ring", 5.3)) < 1e-9);
     assert_eq!([-1.0, 0.5, 7.0].map(|share| at("line", share)[0].round()), [0.0, 2.0, 4.0]);
+    let tiny = json!({"paths": {"dot": {"points": [[0, 0, 0], [1e-300, 0, 0], [1e-45, 0, 0]], "closed": true}}});
+    assert!(vector(&value_in(tiny, json!({"along": {"path": "dot", "at": 0.4}}), 0.0))[0] < 1e-40);
 }
 
 #[test]
