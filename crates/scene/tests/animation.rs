@@ -195,6 +195,8 @@ fn things_go_along_paths_at_an_even_speed() {
     }
     assert!(distance(&at("ring", 0.3), &at("ring", 5.3)) < 1e-9);
     assert_eq!([-1.0, 0.5, 7.0].map(|share| at("line", share)[0].round()), [0.0, 2.0, 4.0]);
+    let tiny = json!({"paths": {"dot": {"points": [[0, 0, 0], [1e-300, 0, 0], [1e-45, 0, 0]], "closed": true}}});
+    assert!(vector(&value_in(tiny, json!({"along": {"path": "dot", "at": 0.4}}), 0.0))[0] < 1e-40);
 }
 
 #[test]
@@ -360,6 +362,23 @@ fn a_number_of_visibility_is_yes_or_no() {
     assert_eq!(scene("true"), scene("\"=1/3\""));
     assert_eq!(scene("false"), scene("0"));
     assert_ne!(scene("true"), scene("false"));
+}
+
+/// Tracks move what they move while the shutter is open, too; what looks up one time only does not.
+#[test]
+fn tracks_are_seen_by_an_open_shutter() {
+    let moves = |at: &str, shutter: &str| {
+        let text = format!(
+            r#"{{"version": 1, "animation": {{"frames": 8, "frames_per_second": 4}}, "render": {{"shutter": {shutter}}},
+            "objects": [{{"shape": "sphere", "transform": [{{"translate":
+                {{"animate": {{"keys": [[0, [0, 0, 0]], [1, [4, 0, 0]]] {at}}}}}}}]}}]}}"#
+        );
+        let scene = Scene::from_json(text, "a.json").unwrap();
+        assert!(scene.compile().is_ok());
+        scene.fingerprint().parts().contains_key("motion")
+    };
+    assert!(moves("", "[0, 0.5]") && moves(", \"at\": \"=frame / 4\"", "[0, 0.5]"));
+    assert!(!moves("", "[0, 0]") && !moves(", \"at\": 0.5", "[0, 0.5]"));
 }
 
 /// Far more than anybody writes, still in bounded time.

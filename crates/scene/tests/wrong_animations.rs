@@ -244,6 +244,10 @@ fn wrong_joints() -> Vec<(String, &'static str)> {
             "nothing is called `hand`",
         ),
         (translate(r#"{"joint": [0, 0, 0]}"#), "expected an object"),
+        (
+            joint(r#""from": [0, 0, 0], "to": [0, 1e150, 0], "lengths": [1e200, 1e200], "plane_normal": [0, 0, 1]"#),
+            "too large",
+        ),
     ]
 }
 

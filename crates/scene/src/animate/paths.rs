@@ -120,7 +120,8 @@ fn curve_of(path: &Node) -> Option<Curve> {
 
 fn point(node: &Node) -> Option<DVec3> {
     let coordinate = |node: &Node| match &node.value {
-        Value::Number(number) => number.as_f64().filter(|value| value.abs() <= f64::from(f32::MAX)),
+        // What 32 bits can hold, as everywhere in a scene: so that distances neither vanish nor overflow.
+        Value::Number(number) => number.as_f64().map(|value| f64::from(value as f32)).filter(|value| value.is_finite()),
         _ => None,
     };
     match node.elements() {

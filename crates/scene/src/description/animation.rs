@@ -64,7 +64,7 @@ pub enum Component {
 /// lines where points lie close. Two equal points in a row count as one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Path")]
-pub struct Course {
+pub struct ScenePath {
     /// The points that it goes through.
     #[schemars(length(min = 1, max = 10_000))]
     pub points: Vec<[f32; 3]>,

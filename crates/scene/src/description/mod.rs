@@ -19,7 +19,7 @@ mod render;
 mod spheres;
 mod transform;
 
-pub use animation::{Animation, Component, Course, Variable};
+pub use animation::{Animation, Component, ScenePath, Variable};
 pub use bones::Bones;
 pub(crate) use bones::positive_items;
 pub use object::{GroupName, Object, Visible};
@@ -52,7 +52,7 @@ pub struct Description {
     pub variables: IndexMap<String, Variable>,
     /// Curves by name, for the value form `along`. A scene that is written at one frame has none any more.
     #[serde(default, skip_serializing)]
-    pub paths: IndexMap<String, Course>,
+    pub paths: IndexMap<String, ScenePath>,
     /// How the picture is made.
     #[serde(default)]
     pub render: Render,

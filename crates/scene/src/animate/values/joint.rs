@@ -47,7 +47,11 @@ fn value(walk: &mut Walk<'_>, content: &Node, at: &Trail<'_>) -> Option<Node> {
     walk.note(at, |track| track);
     let [from, to, plane_normal] = [from, to, plane_normal].map(DVec3::from);
     match (Bones { from, to, lengths, plane_normal, keep_lengths }).joint() {
-        Ok(joint) => Some(numbers(joint.to_array(), content)),
+        Ok(joint) if joint.is_finite() => Some(numbers(joint.to_array(), content)),
+        Ok(_) => {
+            walk.wrong(content, at, "these numbers are too large: the joint has no place");
+            None
+        }
         Err(wrong) => {
             let node = content.get(wrong.field).unwrap_or(content);
             walk.report(Finding::error(wrong.message).at(at.join(wrong.field)).on(node.place));
