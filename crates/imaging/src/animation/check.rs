@@ -47,6 +47,19 @@ impl AnimationFormat {
         }
     }
 
+    /// Bytes of memory that a writer takes at most, and a frame on its way to it.
+    pub fn memory_needed(self, width: u32, height: u32) -> u64 {
+        // Measured: at most 23 and, with 16 MiB, 170.
+        let (bytes_a_pixel, fixed) = match self {
+            // Light, levels now and before, and what of them is packed.
+            Self::Apng | Self::Gif | Self::Webp => (36, 1 << 20),
+            // Frames that the encoder looks ahead, each also at smaller sizes, and those that it looks back to.
+            #[cfg(feature = "av1")]
+            Self::Mp4 => (200, 16 << 20),
+        };
+        (u64::from(width) * u64::from(height)).saturating_mul(bytes_a_pixel).saturating_add(fixed)
+    }
+
     /// Whether such a film can be written; `place` is how messages call it.
     pub fn check(self, place: &str, header: &AnimationHeader) -> Result<(), ImageError> {
         let AnimationHeader { width, height, frames, frames_per_second, quality, .. } = *header;

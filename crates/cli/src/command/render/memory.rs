@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::format::bytes;
 use crate::output::STANDARD_OUTPUT;
-use crate::plan::{Encoding, Plan, Product, Shot};
+use crate::plan::{Encoding, Plan, Product, Shard, Shot};
 use juggler::Limit;
 use juggler::imaging::Header;
 use juggler::memory::{Effort, Memory, Part, sum};
@@ -29,6 +29,10 @@ pub fn of(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<Memory, Failure> {
         let header = Header { options, ..Header::new(width, height) };
         let file = format.memory_needed(&header, shot.output != STANDARD_OUTPUT);
         memory = memory.and(format!("the {format} file"), file);
+        // A shard makes pictures alone.
+        if let Some(reel) = plan.reel.as_ref().filter(|_| plan.shard == Shard::WHOLE) {
+            memory = memory.and(format!("the {} film", reel.format), reel.format.memory_needed(width, height));
+        }
     }
     Ok(memory)
 }
@@ -86,6 +90,10 @@ fn help(plan: &Plan, largest: &Part, needed: u64, most: u64) -> String {
             "a kept film needs 36 bytes a pixel and more; without `--checkpoint`, `--noise`, `--time` and \
              `--samples-from` there is none; parts (`--shard 0/{shards} -o part.jfilm`) need less, as does a smaller `--size`"
         ),
+        film if film.ends_with(" film") => {
+            "a film of another format (.webp .apng .gif) may need less; so do numbered pictures and a smaller `--size`"
+                .into()
+        }
         file if file.ends_with(" file") => {
             "PNG, EXR, HDR and PFM files are written row by row and need less, as does a smaller `--size`".into()
         }

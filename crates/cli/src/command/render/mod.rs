@@ -84,6 +84,8 @@ impl Session {
         let Some((reel, header)) = self.plan.reel.as_ref().zip(header) else {
             return self.frames(&scene, &shots, start, |_| true);
         };
+        // What needs more memory than it may have is refused before anything is there, too.
+        shots.first().map(|first| memory::fitting(&self.plan, &scene, first)).transpose()?;
         if self.plan.shard != Shard::WHOLE {
             let _folder = Folder::open(&reel.folder(), Use::Shared)?;
             self.frames(&scene, &shots, start, |_| true).map_err(|failure| failure.keeping(Some(reel.folder())))?;
@@ -124,6 +126,10 @@ impl Session {
                 self.one(scene, shot, &mut studio, Moment { start, course: course_now }, &mut interrupts)?;
             if !done(shot) {
                 break;
+            }
+            // Between frames that are there already, nobody else looks.
+            if let Some(failure) = interrupts.as_ref().and_then(Interrupts::caught) {
+                return Err(failure);
             }
             course = course.after(is_rendered.then(|| start.elapsed()));
             start = Instant::now();
@@ -172,14 +178,14 @@ impl Session {
             let tone = serde_json::to_string(&header.tone).unwrap_or_default();
             header.metadata.push((reel::TONE.to_owned(), tone));
         }
-        if self.plan.leaves_what_is_there() && reel::is_made(take.shot, &header) {
-            self.tell_left(take.shot)?;
-            return Ok(false);
-        }
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,
             none => none.insert(Interrupts::watch()?),
         };
+        if self.plan.leaves_what_is_there() && reel::is_made(take.shot, &header) {
+            self.tell_left(take.shot)?;
+            return Ok(false);
+        }
         let outcome = match self.plan.product {
             Product::Picture(encoding) if !self.plan.needs_film(take.shot) => {
                 self.render(take, encoding.format, &header, interrupts)?
