@@ -18,7 +18,7 @@ pub fn lamps(scene: &Description, moments: &[Description]) -> Vec<Lamp> {
         let keys = keys.filter(|keys| keys.iter().any(|key| *key != light)).unwrap_or_default();
         let mut parts = (0..if keys.is_empty() { 0 } else { PARTS }).map(|part| at_part(&keys, part, light));
         match parts.next() {
-            Some(first) => Lamp::moving(first, parts.collect()),
+            Some(first) => Lamp::moving(&first, &parts.collect::<Vec<_>>()),
             None => Lamp::from(light.clone()),
         }
     };

@@ -177,7 +177,7 @@ impl Files<'_> {
         match base.blended(&targets.iter().map(Vec::as_slice).collect::<Vec<_>>()) {
             Ok(data) => Some(data),
             Err(invalid) => {
-                findings.push(Finding::error(invalid.message).at(&Path::from(path).join(&invalid.field)));
+                findings.push(Finding::error(invalid.message).at(Path::from(path).join(&invalid.field)));
                 None
             }
         }

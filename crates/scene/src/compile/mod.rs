@@ -164,7 +164,7 @@ fn cameras(scene: &Description, moments: &[Description], bounds: &Aabb, findings
         if let (Err(invalid), true) = (camera.project(size), findings.is_empty()) {
             let path = Path::root().key(if moment.camera.is_some() { "camera" } else { "cameras" });
             let message = format!("while the shutter is open, {}", invalid.message);
-            findings.push(Finding::error(message).at(&path.join(invalid.field)));
+            findings.push(Finding::error(message).at(path.join(invalid.field)));
         }
     }
     (cameras, course)

@@ -134,7 +134,7 @@ impl Preparing<'_> {
         match self.files.moving(&moments.iter().collect::<Vec<_>>(), path, self.findings) {
             None => self.files.mesh(mesh, path, self.findings),
             Some(Ok(moving)) => Some(moving),
-            Some(Err(invalid)) => self.fail(invalid.message, &Path::from(path).join(&invalid.field)),
+            Some(Err(invalid)) => self.fail(invalid.message, Path::from(path).join(&invalid.field)),
         }
     }
 

@@ -29,14 +29,14 @@ pub struct Source {
 
 impl From<AnyLight> for Lamp {
     fn from(light: AnyLight) -> Self {
-        Self::moving(light, Vec::new())
+        Self::moving(&light, &[])
     }
 }
 
 impl Lamp {
     /// A light that is as `first` and the `others` say, each for the same part of the time that the shutter is open.
-    pub fn moving(first: AnyLight, others: Vec<AnyLight>) -> Self {
-        let all = || std::iter::once(&first).chain(&others);
+    pub fn moving(first: &AnyLight, others: &[AnyLight]) -> Self {
+        let all = || std::iter::once(first).chain(others);
         let count = (others.len() + 1) as f32;
         Self {
             samples: all().map(|light| light.shadow_samples()).fold(1, u32::max),

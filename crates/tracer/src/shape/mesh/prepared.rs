@@ -25,7 +25,7 @@ pub struct Prepared {
 
 /// The hierarchy over a mesh's triangles.
 enum Tree {
-    Still(TriangleBvh),
+    Still(Box<TriangleBvh>),
     Moving(Deforming),
 }
 
@@ -69,7 +69,7 @@ impl Prepared {
         let extent = checked(&data)?;
         let bvh = TriangleBvh::build(&data.positions, &data.triangles, Quality::Balanced)
             .map_err(|error| invalid("triangles", error.to_string()))?;
-        Ok(Self::with(data, Tree::Still(bvh), extent))
+        Ok(Self::with(data, Tree::Still(Box::new(bvh)), extent))
     }
 
     /// The same for a mesh that is as these say at even times while the shutter is open, all with the same triangles.
@@ -91,7 +91,7 @@ impl Prepared {
     /// The same for another vector unit.
     pub fn with_simd_level(&self, level: SimdLevel) -> Self {
         let tree = match &self.tree {
-            Tree::Still(bvh) => Tree::Still(bvh.clone().with_simd_level(level)),
+            Tree::Still(bvh) => Tree::Still(Box::new(TriangleBvh::clone(bvh).with_simd_level(level))),
             Tree::Moving(tree) => Tree::Moving(tree.with_simd_level(level)),
         };
         Self { data: self.data.clone(), tree, areas: OnceLock::new(), ..*self }
