@@ -29,8 +29,9 @@ pub fn place(
         .groups
         .iter()
         .map(|(name, objects)| {
-            let moments: Vec<&[Object]> =
-                moments.iter().filter_map(|at| at.groups.get(name)).map(Vec::as_slice).collect();
+            let moments: Option<Vec<&[Object]>> =
+                moments.iter().map(|at| at.groups.get(name).map(Vec::as_slice)).collect();
+            let moments = moments.unwrap_or_default();
             (name.as_str(), preparing.objects(objects, &moments, &groups.key(name)))
         })
         .collect();
@@ -89,21 +90,21 @@ impl Preparing<'_> {
     /// The one thing that an object is. That it is exactly one has been checked before.
     fn content<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Content<'s>> {
         if let Some(shape) = &object.shape {
-            let others: Vec<&AnyShape> = at.iter().filter_map(|at| at.shape.as_ref()).collect();
+            let others = all(at, |at| at.shape.as_ref());
             let prepared = self.shape(shape, &others, &path.key("shape"))?;
             Some(Content::Shapes(vec![(growth(shape, others), Arc::new(prepared))]))
         } else if let Some(group) = &object.group {
             Some(Content::Group(&group.0))
         } else if let Some(objects) = &object.objects {
-            let at: Vec<&[Object]> = at.iter().filter_map(|at| at.objects.as_deref()).collect();
+            let at = all(at, |at| at.objects.as_deref());
             Some(Content::Objects(self.objects(objects, &at, &path.key("objects"))))
         } else if let Some(chain) = &object.chain {
-            let at = at.iter().filter_map(|at| at.chain.as_ref()).map(|chain| chain.beads().collect());
-            Some(self.beads(chain.beads().collect(), at.collect(), &path.key("chain")))
+            let at = all(at, |at| Some(at.chain.as_ref()?.beads().collect()));
+            Some(self.beads(chain.beads().collect(), at, &path.key("chain")))
         } else if let Some(limb) = &object.limb {
-            let at = at.iter().filter_map(|at| at.limb.as_ref()?.beads().ok());
+            let at = all(at, |at| at.limb.as_ref()?.beads().ok());
             match limb.beads() {
-                Ok(beads) => Some(self.beads(beads, at.collect(), &path.key("limb"))),
+                Ok(beads) => Some(self.beads(beads, at, &path.key("limb"))),
                 Err(wrong) => self.fail(wrong.message, path.key("limb").join(wrong.field)),
             }
         } else {
@@ -186,6 +187,12 @@ impl Preparing<'_> {
     }
 }
 
+/// What all objects have; nothing where one of them has it not, so that times stay even.
+fn all<'o, T>(objects: &[&'o Object], part: impl Fn(&'o Object) -> Option<T>) -> Vec<T> {
+    let parts: Option<Vec<T>> = objects.iter().map(|object| part(object)).collect();
+    parts.unwrap_or_default()
+}
+
 /// All steps as one; `None` where one of them cannot be.
 fn joined(steps: &[TransformStep]) -> Option<Transform> {
     let next = |whole: Transform, step: &TransformStep| Some(whole.then(&step.transform().ok()?));
@@ -228,9 +235,9 @@ struct Placing<'s> {
 impl Placing<'_> {
     /// The objects of one level; those that say nothing are made of `inherited`.
     fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<world::Object> {
-        let mut all = Vec::new();
-        self.place(objects, &Transform::IDENTITY.into(), inherited, &mut all);
-        all
+        let mut found = Vec::new();
+        self.place(objects, &Transform::IDENTITY.into(), inherited, &mut found);
+        found
     }
 
     fn place(
@@ -238,19 +245,19 @@ impl Placing<'_> {
         objects: &[Prepared<'_>],
         parent: &Motion,
         inherited: Option<MaterialId>,
-        all: &mut Vec<world::Object>,
+        found: &mut Vec<world::Object>,
     ) {
         for object in objects {
             let motion = object.motion.then(parent);
             let material = object.material.or(inherited);
             match &object.content {
-                Content::Shapes(shapes) => objects_of(shapes, &motion, material, all),
-                Content::Objects(objects) => self.place(objects, &motion, material, all),
+                Content::Shapes(shapes) => objects_of(shapes, &motion, material, found),
+                Content::Objects(objects) => self.place(objects, &motion, material, found),
                 Content::Group(name) => match self.levels.get(name) {
-                    Some(level) => all.push(placed(Placed::Level(Arc::clone(level)), motion, material)),
+                    Some(level) => found.push(placed(Placed::Level(Arc::clone(level)), motion, material)),
                     None => {
                         let objects = self.groups.get(name).map(Vec::as_slice).unwrap_or_default();
-                        self.place(objects, &motion, material, all);
+                        self.place(objects, &motion, material, found);
                     }
                 },
             }
@@ -262,10 +269,10 @@ fn objects_of(
     shapes: &[(Motion, Arc<AnyShape>)],
     motion: &Motion,
     material: Option<MaterialId>,
-    all: &mut Vec<world::Object>,
+    found: &mut Vec<world::Object>,
 ) {
     let object = |(place, shape): &(Motion, Arc<AnyShape>)| {
         placed(Placed::Shape(Arc::clone(shape)), place.then(motion), material)
     };
-    all.extend(shapes.iter().map(object));
+    found.extend(shapes.iter().map(object));
 }
