@@ -18,8 +18,6 @@ mod schedule;
 mod wavefront;
 
 #[cfg(test)]
-mod blur;
-#[cfg(test)]
 mod tests;
 
 pub use control::{Control, Rays};

@@ -15,6 +15,8 @@ use crate::world::{Object, Vertex};
 use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
+mod blur;
+
 pub fn read<T: DeserializeOwned>(json: &str) -> T {
     serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))
 }

@@ -17,8 +17,6 @@ mod object;
 mod trace;
 
 #[cfg(test)]
-mod moving;
-#[cfg(test)]
 mod precision;
 #[cfg(test)]
 mod tests;

@@ -10,10 +10,12 @@ use juggler_math::testing::Random;
 use juggler_math::{Transform, Vec3};
 use std::sync::Arc;
 
+mod moving;
+
 const NO_LIGHTS: [Lamp; 0] = [];
 
 /// Every kind of shape, each `times`, turned, sheared and moved.
-pub fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec<Object> {
+fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) -> Vec<Object> {
     let mut objects = Vec::new();
     for _ in 0..times {
         for mut shape in AnyShape::examples() {
@@ -31,7 +33,7 @@ pub fn crowd(random: &mut Random, times: usize, material: Option<MaterialId>) ->
 }
 
 /// A world of objects whose materials are 0, 1 and 2.
-pub fn world_of(objects: Vec<Object>) -> World {
+fn world_of(objects: Vec<Object>) -> World {
     let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
     let materials = [0, 1, 2].map(|_| compiler.material("material", &MaterialRef::default()).unwrap());
     assert_eq!(materials, [0, 1, 2].map(MaterialId));
@@ -71,7 +73,7 @@ fn nested(random: &mut Random) -> World {
 
 /// Instances of instances that have an end, so that they stand in the hierarchy, among other objects; without the shapes
 /// of a crowd that have none.
-pub fn grove(random: &mut Random) -> World {
+fn grove(random: &mut Random) -> World {
     let bounded = |mut objects: Vec<Object>| {
         objects.retain(Object::is_bounded);
         objects
@@ -93,7 +95,7 @@ pub fn grove(random: &mut Random) -> World {
 }
 
 /// The same shapes without any level, as they stand at a time: transforms joined, materials inherited.
-pub fn expanded_at(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>, time: f32) -> Vec<Object> {
+fn expanded_at(objects: &[Placed], parent: &Transform, inherited: Option<MaterialId>, time: f32) -> Vec<Object> {
     let expand = |placed: &Placed| {
         let Placed { content, motion, material, .. } = placed;
         let (place, material) = (motion.at(time).then(parent), material.or(inherited));
@@ -132,7 +134,7 @@ fn nearest(world: &World, ray: &Ray) -> WorldHit {
 }
 
 /// So many rays from one place, close together or in all directions, some with an end.
-pub fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
+fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
     let origin = random.point(40.0);
     let axis = random.unit_vector();
     let spread = if round.is_multiple_of(2) { 0.02 } else { 2.0 };
@@ -143,7 +145,7 @@ pub fn rays(random: &mut Random, round: usize, count: usize) -> Vec<Ray> {
         .collect()
 }
 
-pub fn equals_brute_force(world: &World, rounds: usize) {
+fn equals_brute_force(world: &World, rounds: usize) {
     let mut random = Random::new(17);
     let mut met = 0;
     for round in 0..rounds {
@@ -211,7 +213,7 @@ fn of_coincident_instances_the_lower_number_is_hit() {
 }
 
 /// A wavy square of 1,152 triangles.
-pub fn large_mesh() -> AnyShape {
+fn large_mesh() -> AnyShape {
     const SIDE: u32 = 24;
     let corner = |i: u32| Vec2::new((i % (SIDE + 1)) as f32, (i / (SIDE + 1)) as f32) / SIDE as f32 - 0.5;
     let position = |at: Vec2| Vec3::new(20.0 * at.x, 60.0 * at.x * at.y, 20.0 * at.y);

@@ -1,7 +1,7 @@
 //! Tests of what moves while the shutter is open.
 
-use super::tests::{crowd, equals_brute_force, expanded_at, grove, large_mesh, rays, world_of};
-use super::*;
+use super::{crowd, equals_brute_force, expanded_at, grove, large_mesh, rays, world_of};
+use crate::world::*;
 use juggler_math::testing::Random;
 use juggler_math::{Motion, Transform};
 use std::sync::Arc;

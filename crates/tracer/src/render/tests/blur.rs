@@ -1,9 +1,9 @@
 //! Tests of motion blur against closed forms: how much of the time that the shutter is open a point is covered.
 
-use super::tests::{job, look, pixels, read, world, world_in_motion};
-use super::*;
+use super::{job, look, pixels, read, world, world_in_motion};
 use crate::camera::{AnyCamera, Orthographic, Projection, Shot};
 use crate::integrator::{AnyIntegrator, Emit, Path};
+use crate::render::*;
 use crate::world::Vertex;
 use juggler_math::testing::{chi_squared, z_test};
 use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
