@@ -11,11 +11,14 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 /// Frames that wait to be encoded while the next are rendered.
 const WAITING: usize = 2;
 /// The file in a folder of frames by which processes know of each other.
 const LOCK: &str = ".lock";
+/// How long to wait for it.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The text of a picture that says its tone, where it is not the usual one.
 pub const TONE: &str = "Tone";
@@ -47,8 +50,7 @@ impl Folder {
         let name = format!("{path}/{LOCK}");
         let file = File::options().create(true).append(true).open(&name);
         let file = file.map_err(|error| Failure::file("write", &name, &error))?;
-        let locked = if purpose == Use::Shared { file.try_lock_shared() } else { file.try_lock() };
-        match locked {
+        match locked(&file, purpose) {
             Ok(()) => Ok(Self { path: path.into(), _lock: Some(file) }),
             Err(TryLockError::WouldBlock) => Err(Failure::System(format!(
                 "other processes are at work in `{path}`: the same command can make the film when they are done"
@@ -74,6 +76,18 @@ impl Folder {
         }
         let _ = fs::remove_dir(&self.path);
         Ok(())
+    }
+}
+
+/// Takes the lock. A process that was killed a moment ago may still have it until the system has cleared it away.
+fn locked(file: &File, purpose: Use) -> Result<(), TryLockError> {
+    let patient_until = Instant::now() + PATIENCE;
+    loop {
+        let locked = if purpose == Use::Shared { file.try_lock_shared() } else { file.try_lock() };
+        match locked {
+            Err(TryLockError::WouldBlock) if Instant::now() < patient_until => thread::sleep(PATIENCE / 40),
+            other => return other,
+        }
     }
 }
 
