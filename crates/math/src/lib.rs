@@ -12,6 +12,7 @@ pub mod fun;
 pub mod hash;
 pub mod image;
 pub mod motion;
+pub mod quaternion;
 pub mod ray;
 pub mod robust;
 pub mod transform;

@@ -4,8 +4,9 @@
 //! straight line. Turns are not straight: [`Motion::smoothed`] takes them apart (polar decomposition: Higham 1986; as
 //! Shoemake and Duff 1992, "Matrix Animation and Polar Decomposition") and puts in as many keys as they need.
 
+use crate::quaternion::slerp;
 use crate::{Aabb, Transform, Vec3, fun};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3, Mat3};
 use std::sync::Arc;
 
 /// How much something may turn between two keys, in radians: chords of it are 1.2e-4 of the radius too short at most.
@@ -95,7 +96,8 @@ impl Motion {
         let turn = parts.windows(2).map(|pair| pair[0].angle_to(&pair[1])).fold(0.0, f64::max);
         let steps = (turn / STEP_RADIANS).ceil().clamp(1.0, (MOST_KEYS / keys.len()).max(1) as f64) as usize;
         if steps == 1 {
-            return Self::Moving(thinned(keys.to_vec(), size).into());
+            let straight = |at: &_, before: &_, after: &_| is_between(at, before, after, size);
+            return Self::Moving(thinned(keys.to_vec(), straight).into());
         }
         let mut round = Vec::with_capacity(steps * (keys.len() - 1) + 1);
         for (pair, ends) in parts.windows(2).zip(keys.windows(2)) {
@@ -119,21 +121,24 @@ pub fn stretch(keys: usize, time: f32) -> (usize, f32) {
     (key, place - key as f32)
 }
 
-/// Leaves out every second key as long as straight ways stay near enough to those that are left out.
-fn thinned(mut keys: Vec<Transform>, size: f32) -> Vec<Transform> {
+/// Leaves out every second of the keys at even times as long as it lies on the straight way between its neighbours, which
+/// `straight` says of a key, the one before and the one after.
+pub fn thinned<T>(mut keys: Vec<T>, straight: impl Fn(&T, &T, &T) -> bool) -> Vec<T> {
     while keys.len() > 2 && keys.len() % 2 == 1 {
-        let straight = keys.windows(3).step_by(2).all(|three| {
-            let middle = three[0].towards(&three[2], 0.5);
-            let stretch = (middle.matrix() - three[1].matrix()).to_cols_array().iter().fold(0.0, |m, v| v.abs().max(m));
-            let whole = three[1].matrix().to_cols_array().iter().fold(0.0, |m: f32, v| v.abs().max(m));
-            (middle.origin() - three[1].origin()).length() <= TOLERANCE * size && stretch <= TOLERANCE * whole
-        });
-        if !straight {
+        if !keys.windows(3).step_by(2).all(|three| straight(&three[1], &three[0], &three[2])) {
             break;
         }
         keys = keys.into_iter().step_by(2).collect();
     }
     keys
+}
+
+/// Whether something of this size is nearly where the straight way from one place to the next has it.
+fn is_between(at: &Transform, before: &Transform, after: &Transform, size: f32) -> bool {
+    let largest = |matrix: Mat3| matrix.to_cols_array().iter().fold(0.0, |largest: f32, v| v.abs().max(largest));
+    let middle = before.towards(after, 0.5);
+    (middle.origin() - at.origin()).length() <= TOLERANCE * size
+        && largest(middle.matrix() - at.matrix()) <= TOLERANCE * largest(at.matrix())
 }
 
 /// A transform taken apart: stretched, then turned (and mirrored), then moved.
@@ -185,18 +190,6 @@ impl Parts {
         let matrix = DMat3::from_quat(self.turn) * self.stretch * self.sign;
         Transform::new(matrix.as_mat3(), self.translation.as_vec3())
     }
-}
-
-/// A share of the way from one turn to another at even speed, the shorter way (Shoemake 1985).
-pub fn slerp(from: DQuat, to: DQuat, share: f64) -> DQuat {
-    let cosine = from.dot(to);
-    let to = if cosine < 0.0 { -to } else { to };
-    let angle = fun::acos_f64(cosine.abs().min(1.0));
-    if angle < 1e-6 {
-        return (from * (1.0 - share) + to * share).normalize();
-    }
-    let (a, b) = (fun::sin_f64((1.0 - share) * angle), fun::sin_f64(share * angle));
-    ((from * a + to * b) / fun::sin_f64(angle)).normalize()
 }
 
 impl Transform {

@@ -3,7 +3,7 @@
 //! stands still where the picture does.
 
 use super::changes::{Frames, Part};
-use super::pace::ticks_until;
+use super::pace::Clock;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::look::threshold;
@@ -28,8 +28,8 @@ pub(super) struct Writer {
     encoder: gif::Encoder<Box<dyn Write + Send>>,
     frames: Frames,
     place: String,
-    frames_per_second: f64,
-    written: u32,
+    /// Hundredths of a second.
+    clock: Clock,
 }
 
 impl Writer {
@@ -48,16 +48,7 @@ impl Writer {
         });
         let encoder = begun.map_err(|error| failed(&place, error))?;
         let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255));
-        Ok(Self { encoder, frames, place, frames_per_second: header.frames_per_second, written: 0 })
-    }
-
-    /// Hundredths of a second until the next frame. They are rounded from the start, so that the whole takes as long as
-    /// it should.
-    fn delay(&mut self) -> u16 {
-        let at = |frame: u32| ticks_until(frame, 100.0, self.frames_per_second);
-        let delay = at(self.written + 1) - at(self.written);
-        self.written += 1;
-        delay.min(u64::from(u16::MAX)) as u16
+        Ok(Self { encoder, frames, place, clock: Clock::new(100.0, header.frames_per_second) })
     }
 }
 
@@ -66,7 +57,7 @@ impl FrameWriter for Writer {
         let (part, bytes) = self.frames.next(pixels);
         let (palette, indices) = few(&bytes).unwrap_or_else(|| learned(&part, &bytes));
         let frame = Frame {
-            delay: self.delay(),
+            delay: self.clock.tick().min(u64::from(u16::MAX)) as u16,
             left: part.x as u16,
             top: part.y as u16,
             width: part.width as u16,

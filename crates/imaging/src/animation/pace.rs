@@ -15,8 +15,30 @@ pub(super) fn duration(frames_per_second: f64, most: u32) -> (u32, u32) {
     (best as u32, ((frames_per_second * best).round() as u32).max(1))
 }
 
+/// How long each frame in turn is shown, in ticks of a clock; together as long as the whole should take.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    ticks_per_second: f64,
+    frames_per_second: f64,
+    shown: u32,
+}
+
+impl Clock {
+    pub fn new(ticks_per_second: f64, frames_per_second: f64) -> Self {
+        Self { ticks_per_second, frames_per_second, shown: 0 }
+    }
+
+    /// Ticks of the next frame.
+    pub fn tick(&mut self) -> u64 {
+        let until = |frame: u32| ticks_until(frame, self.ticks_per_second, self.frames_per_second);
+        let ticks = until(self.shown + 1) - until(self.shown);
+        self.shown += 1;
+        ticks
+    }
+}
+
 /// Ticks of a clock from the start to a frame, rounded to whole ones, so that rounding never adds up.
-pub(super) fn ticks_until(frame: u32, ticks_per_second: f64, frames_per_second: f64) -> u64 {
+fn ticks_until(frame: u32, ticks_per_second: f64, frames_per_second: f64) -> u64 {
     (f64::from(frame) * ticks_per_second / frames_per_second).round() as u64
 }
 

@@ -1,7 +1,7 @@
 //! Animated WebP (RFC 9649, 2.7): a canvas, and frames that replace parts of it, each a lossless picture of its own.
 
 use super::changes::{Frames, Part};
-use super::pace::ticks_until;
+use super::pace::Clock;
 use super::{AnimationHeader, FrameWriter, refused};
 use crate::ImageError;
 use crate::output::{Destination, WriteSeek};
@@ -22,8 +22,8 @@ pub(super) struct Writer {
     bytes: Box<dyn WriteSeek>,
     frames: Frames,
     place: String,
-    frames_per_second: f64,
-    written: u32,
+    /// Thousandths of a second.
+    clock: Clock,
 }
 
 impl Writer {
@@ -32,15 +32,7 @@ impl Writer {
         let mut bytes = destination.into_seekable();
         begin(&mut bytes, header).map_err(|source| failed(&place, source))?;
         let frames = Frames::new(header.width, Quantizer::new(&header.tone, 255)).with_even_corners();
-        Ok(Self { bytes, frames, place, frames_per_second: header.frames_per_second, written: 0 })
-    }
-
-    /// Thousandths of a second until the next frame; together as long as the whole should take.
-    fn delay(&mut self) -> u32 {
-        let at = |frame: u32| ticks_until(frame, 1000.0, self.frames_per_second);
-        let delay = at(self.written + 1) - at(self.written);
-        self.written += 1;
-        delay.min((1 << 24) - 1) as u32
+        Ok(Self { bytes, frames, place, clock: Clock::new(1000.0, header.frames_per_second) })
     }
 }
 
@@ -95,7 +87,8 @@ impl FrameWriter for Writer {
         let (part, bytes) = self.frames.next(pixels);
         let picture = encoded(&part, &bytes)
             .map_err(|error| refused(&self.place, format!("cannot be encoded as WebP: {error}")))?;
-        let frame = frame(&part, self.delay(), &picture);
+        let delay = self.clock.tick().min((1 << 24) - 1) as u32;
+        let frame = frame(&part, delay, &picture);
         self.bytes.write_all(&frame).map_err(|source| failed(&self.place, source))
     }
 

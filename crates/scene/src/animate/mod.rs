@@ -18,7 +18,6 @@ use walk::Walk;
 mod curve;
 mod easing;
 mod paths;
-mod quaternion;
 mod spline;
 mod survey;
 mod values;
@@ -27,7 +26,6 @@ mod walk;
 
 pub use easing::{Ease, Easing};
 pub use paths::{MAX_POINTS, PathName};
-pub use quaternion::{matrix, turn};
 pub use survey::{Survey, Track, depends_on_time};
 pub use values::{Along, Animate, Interpolation, Joint, Key, MAX_KEYS, Repeat, ValueForm};
 pub use walk::MAX_NESTING;

@@ -5,8 +5,8 @@
 //! ```
 
 use super::Misplaced;
-use crate::animate;
 use glam::{DMat3, Mat3};
+use juggler_math::quaternion;
 use juggler_math::{DVec3, Transform, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -123,7 +123,7 @@ impl TransformStep {
                     .ok_or_else(|| Misplaced::new("scale", "`scale` must not be 0: the object would be flat"))
             }
             Self::Orient(quaternion) => {
-                let turn = animate::matrix(quaternion.map(f64::from));
+                let turn = quaternion::matrix(quaternion.map(f64::from));
                 turn.and_then(|turn| Transform::new(turn.as_mat3(), Vec3::ZERO))
                     .ok_or_else(|| Misplaced::new("orient", "a quaternion must not be all 0: it turns nowhere"))
             }
@@ -169,7 +169,7 @@ mod tests {
         assert!(TransformStep::Orient([0.0; 4]).transform().is_err());
         let rotate =
             TransformStep::Rotate(Rotate { axis: Vec3::new(1.0, 2.0, 3.0), degrees: 40.0 }).transform().unwrap();
-        let turn = animate::turn(DVec3::new(1.0, 2.0, 3.0), 40.0).unwrap().to_array().map(|number| number as f32);
+        let turn = quaternion::turn(DVec3::new(1.0, 2.0, 3.0), 40.0).unwrap().to_array().map(|number| number as f32);
         let orient = TransformStep::Orient(turn).transform().unwrap();
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             assert!(rotate.point(axis).abs_diff_eq(orient.point(axis), 1e-6));

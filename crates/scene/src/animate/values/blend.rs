@@ -1,9 +1,10 @@
 //! Values as numbers: what can be interpolated, and back into the form of a value.
 
-use crate::animate::{number, numbers, quaternion};
+use crate::animate::{number, numbers};
 use crate::document::{Node, Value};
 use glam::{DQuat, DVec3};
 use juggler_math::Rgb;
+use juggler_math::quaternion;
 use std::sync::Arc;
 
 /// How colours become numbers: linear red, green and blue, in which they are mixed.

@@ -8,13 +8,13 @@ use super::keys::{Key, Keys};
 use super::{Kind, blend};
 use crate::animate::easing::Ease;
 use crate::animate::numbers;
-use crate::animate::quaternion::slerp;
 use crate::animate::spline::{hermite, tangent};
 use crate::animate::survey::Track;
 use crate::animate::walk::Walk;
 use crate::document::{Node, Value};
 use crate::expression::modulo;
 use crate::path::Trail;
+use juggler_math::quaternion::slerp;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

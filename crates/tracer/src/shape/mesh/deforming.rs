@@ -4,7 +4,7 @@ use super::MeshData;
 use crate::shape::facet::Facet;
 use crate::shape::{InvalidShape, check::invalid};
 use juggler_bvh::{MovingTriangleBvh, Quality, SimdLevel, TriangleHit};
-use juggler_math::motion::{between, stretch};
+use juggler_math::motion::{between, stretch, thinned};
 use juggler_math::{Aabb, Ray, Vec3};
 
 /// How far a corner may be off its way where moments are left out, in sizes of the mesh.
@@ -23,7 +23,8 @@ impl Deforming {
     pub fn new(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
         let points = keys.iter().flat_map(|key| key.positions.iter().copied());
         let bounds = Aabb::from_points(points);
-        let keys = thinned(keys, TOLERANCE * bounds.extent().length());
+        let tolerance = TOLERANCE * bounds.extent().length();
+        let keys = thinned(keys, |at, before, after| is_between(at, before, after, tolerance));
         let tree = |pair: &[MeshData]| match pair {
             [from, to] => {
                 MovingTriangleBvh::build(&from.positions, &to.positions, &from.triangles, 1.0, Quality::Balanced)
@@ -85,18 +86,8 @@ impl Deforming {
     }
 }
 
-/// Leaves out every second moment as long as corners stay near their ways.
-fn thinned(mut keys: Vec<MeshData>, tolerance: f32) -> Vec<MeshData> {
-    while keys.len() > 2 && keys.len() % 2 == 1 {
-        let straight = keys.windows(3).step_by(2).all(|three| {
-            let [from, middle, to] = three else { return false };
-            let ends = from.positions.iter().zip(&to.positions);
-            ends.zip(&middle.positions).all(|((a, b), at)| between(*a, *b, 0.5).distance(*at) <= tolerance)
-        });
-        if !straight {
-            break;
-        }
-        keys = keys.into_iter().step_by(2).collect();
-    }
-    keys
+/// Whether all corners are near the straight ways from one moment to the next.
+fn is_between(at: &MeshData, before: &MeshData, after: &MeshData, tolerance: f32) -> bool {
+    let ends = before.positions.iter().zip(&after.positions);
+    ends.zip(&at.positions).all(|((a, b), at)| between(*a, *b, 0.5).distance(*at) <= tolerance)
 }

@@ -1,8 +1,8 @@
 //! Rotations as unit quaternions [x, y, z, w], as in glTF. Shoemake, *Animating Rotation with Quaternion Curves*
 //! (1985). All functions give the same bits everywhere.
 
+use crate::fun;
 use glam::{DMat3, DQuat, DVec3};
-use juggler_math::fun;
 
 /// A turn about an axis; nothing when the axis has no length.
 pub fn turn(axis: DVec3, degrees: f64) -> Option<DQuat> {
