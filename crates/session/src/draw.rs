@@ -5,7 +5,7 @@ use crate::screen::{Draft, color_of};
 use juggler::Picture;
 use juggler::math::{Ray, UVec2};
 use juggler::tracer::film::Rect;
-use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, Path};
+use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, PathState};
 use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stopped};
 use juggler::tracer::world::{Vertex, World};
 
@@ -16,7 +16,7 @@ enum Numbers {
 }
 
 impl Integrator for Numbers {
-    fn vertex(&self, _world: &World, _ray: &Ray, _path: &Path, vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, _world: &World, _ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
         let number = match self {
             Self::Objects => vertex.object,
             Self::Materials => vertex.material.0,

@@ -83,6 +83,12 @@ fn glows(material: &AnyMaterial) -> bool {
     };
     match material {
         AnyMaterial::Phong(phong) => !matches!(&phong.emission, Input::Value(color) if color.is_black()),
+        AnyMaterial::Emissive(_) => true,
         AnyMaterial::Checkerboard(board) => inline(&board.even) || inline(&board.odd),
+        AnyMaterial::Mask(mask) => inline(&mask.material),
+        AnyMaterial::Mix(mix) => inline(&mix.a) || inline(&mix.b),
+        AnyMaterial::Diffuse(_) | AnyMaterial::Conductor(_) | AnyMaterial::Dielectric(_) | AnyMaterial::Boundary(_) => {
+            false
+        }
     }
 }

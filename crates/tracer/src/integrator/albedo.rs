@@ -4,7 +4,7 @@
 //! {"albedo": {}}
 //! ```
 
-use super::{Emit, Integrator, Path};
+use super::{Emit, Integrator, PathState};
 use crate::world::{Vertex, World};
 use juggler_math::Ray;
 use schemars::JsonSchema;
@@ -16,8 +16,12 @@ use serde::{Deserialize, Serialize};
 pub struct Albedo {}
 
 impl Integrator for Albedo {
-    fn vertex(&self, world: &World, _ray: &Ray, _path: &Path, vertex: &Vertex, emit: &mut Emit) {
-        emit.add(world.phong(vertex).diffuse);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        let diffuse = world.phong(vertex).map(|phong| phong.diffuse);
+        emit.add(diffuse.unwrap_or_else(|| {
+            let shade = world.shade(vertex, -ray.direction, 1.0, path.sampler.at(0).next_1d());
+            shade.bsdf.albedo(shade.frame.to_local(-ray.direction))
+        }));
     }
 }
 

@@ -4,7 +4,7 @@
 //! {"ambient_occlusion": {"distance": 2}}
 //! ```
 
-use super::{Emit, Integrator, Path};
+use super::{Emit, Integrator, PathState};
 use crate::world::{Vertex, World};
 use juggler_math::{Frame, Ray, Rgb, warp};
 use schemars::JsonSchema;
@@ -20,7 +20,7 @@ pub struct AmbientOcclusion {
 }
 
 impl Integrator for AmbientOcclusion {
-    fn vertex(&self, world: &World, ray: &Ray, path: &Path, vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
         let surface = &vertex.surface;
         let facing = surface.normal.dot(ray.direction) < 0.0;
         let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });
@@ -31,7 +31,7 @@ impl Integrator for AmbientOcclusion {
         emit.if_visible(surface.spawn(direction, ray.time).up_to(distance), Rgb::WHITE);
     }
 
-    fn escape(&self, _world: &World, _ray: &Ray, emit: &mut Emit) {
+    fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, emit: &mut Emit) {
         emit.add(Rgb::WHITE);
     }
 }

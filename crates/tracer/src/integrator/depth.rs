@@ -4,7 +4,7 @@
 //! {"depth": {"far": 10}}
 //! ```
 
-use super::{Emit, Integrator, Path};
+use super::{Emit, Integrator, PathState};
 use crate::world::{Vertex, World};
 use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
@@ -20,7 +20,7 @@ pub struct Depth {
 }
 
 impl Integrator for Depth {
-    fn vertex(&self, _world: &World, ray: &Ray, _path: &Path, _vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, _world: &World, ray: &Ray, _path: &PathState, _vertex: &Vertex, emit: &mut Emit) {
         emit.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)));
     }
 }

@@ -1,17 +1,21 @@
 //! What an integrator may do at a vertex.
 
+use super::Trail;
+use crate::medium::Interiors;
 use crate::sampler::Sampler;
 use juggler_math::{Ray, Rgb};
 
 /// What a ray in flight carries along.
 #[derive(Clone, Copy, Debug)]
-pub struct Path {
+pub struct PathState {
     /// What its radiance is worth to the sample.
     pub weight: Rgb,
     /// Vertices before the next one.
     pub depth: u32,
     /// Numbers of the next vertex.
     pub sampler: Sampler,
+    /// What a path of light remembers of its last vertex.
+    pub trail: Trail,
     /// Sample of the engine's pass.
     pub(crate) slot: u32,
 }
@@ -20,11 +24,11 @@ pub struct Path {
 #[derive(Debug, Default)]
 pub(crate) struct Queue {
     pub rays: Vec<Ray>,
-    pub paths: Vec<Path>,
+    pub paths: Vec<PathState>,
 }
 
 impl Queue {
-    pub fn push(&mut self, ray: Ray, path: Path) {
+    pub fn push(&mut self, ray: Ray, path: PathState) {
         self.rays.push(ray);
         self.paths.push(path);
     }
@@ -44,7 +48,18 @@ impl Queue {
 pub(crate) struct ShadowQueue {
     pub rays: Vec<Ray>,
     /// What each ray adds to which slot.
-    pub gains: Vec<(u32, Rgb)>,
+    pub gains: Vec<Gain>,
+}
+
+/// What a shadow ray adds when it comes through.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gain {
+    /// To which sample.
+    pub slot: u32,
+    /// How much.
+    pub radiance: Rgb,
+    /// The solids that the ray starts in.
+    pub inside: Interiors,
 }
 
 /// Everything that a segment of the queue brings forth; kept and emptied by the engine.
@@ -75,52 +90,86 @@ const MAX_LIGHT_QUEUES: usize = 64;
 /// What an integrator may do at a vertex: add, ask, go on.
 pub struct Emit<'a> {
     harvest: &'a mut Harvest,
-    path: &'a Path,
+    path: &'a PathState,
+    /// What radiance from here is worth to the sample.
+    weight: Rgb,
 }
 
 impl<'a> Emit<'a> {
-    pub(crate) fn new(harvest: &'a mut Harvest, path: &'a Path) -> Self {
-        Self { harvest, path }
+    pub(crate) fn new(harvest: &'a mut Harvest, path: &'a PathState) -> Self {
+        Self { harvest, path, weight: path.weight }
+    }
+
+    /// What radiance from here is worth to the sample.
+    #[inline]
+    pub fn weight(&self) -> Rgb {
+        self.weight
+    }
+
+    /// From now on all counts `factor` times as much: what became of light on its way here.
+    #[inline]
+    pub fn scale(&mut self, factor: Rgb) {
+        self.weight *= factor;
     }
 
     /// Adds to the sample, times the path's weight.
     #[inline]
     pub fn add(&mut self, radiance: Rgb) {
-        self.harvest.radiance[self.path.slot as usize] += radiance * self.path.weight;
+        self.harvest.radiance[self.path.slot as usize] += radiance * self.weight;
     }
 
     /// Adds, times the path's weight, what of `radiance` comes through along `ray` from light number `light`.
     #[inline]
     pub fn if_light_visible(&mut self, light: usize, ray: Ray, radiance: Rgb) {
         let queues = self.harvest.shadows.len() - 1;
-        self.push_shadow(if light < queues { light } else { light % queues.max(1) }, ray, radiance);
+        let queue = if light < queues { light } else { light % queues.max(1) };
+        self.push_shadow(queue, ray, radiance, Interiors::NONE);
     }
 
     /// The same for a ray of no particular direction.
     #[inline]
     pub fn if_visible(&mut self, ray: Ray, radiance: Rgb) {
-        self.push_shadow(self.harvest.shadows.len() - 1, ray, radiance);
+        self.if_visible_inside(ray, radiance, Interiors::NONE);
     }
 
-    fn push_shadow(&mut self, queue: usize, ray: Ray, radiance: Rgb) {
-        let radiance = radiance * self.path.weight;
+    /// The same for a ray that starts in solids, whose media take their share of it.
+    #[inline]
+    pub fn if_visible_inside(&mut self, ray: Ray, radiance: Rgb, inside: Interiors) {
+        self.push_shadow(self.harvest.shadows.len() - 1, ray, radiance, inside);
+    }
+
+    fn push_shadow(&mut self, queue: usize, ray: Ray, radiance: Rgb, inside: Interiors) {
+        let radiance = radiance * self.weight;
         if radiance.is_black() {
             return;
         }
         self.harvest.pending += 1;
         let queue = &mut self.harvest.shadows[queue];
         queue.rays.push(ray);
-        queue.gains.push((self.path.slot, radiance));
+        queue.gains.push(Gain { slot: self.path.slot, radiance, inside });
     }
 
     /// Follows `ray`, the `child`-th that leaves this vertex; what it finds counts `weight` times as much.
     #[inline]
     pub fn go_on(&mut self, ray: Ray, weight: Rgb, child: u32) {
-        let path = Path {
-            weight: self.path.weight * weight,
+        let path = PathState {
+            weight: self.weight * weight,
             depth: self.path.depth + 1,
             sampler: self.path.sampler.branch(child),
-            slot: self.path.slot,
+            ..*self.path
+        };
+        self.harvest.next.push(ray, path);
+    }
+
+    /// Follows `ray` as the one path that goes on from here, `steps` vertices further.
+    #[inline]
+    pub fn follow(&mut self, ray: Ray, weight: Rgb, trail: Trail, steps: u32) {
+        let path = PathState {
+            weight: self.weight * weight,
+            depth: self.path.depth + steps,
+            sampler: self.path.sampler.branch(0),
+            trail,
+            ..*self.path
         };
         self.harvest.next.push(ray, path);
     }

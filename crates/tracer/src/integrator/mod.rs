@@ -4,31 +4,39 @@
 //! (module `render`). Radiance is linear in its rays, so even a tree of mirror, glass and glossy rays is
 //! a queue of weighted rays.
 
-use crate::world::{Vertex, World};
+use crate::world::{Shadows, Vertex, World};
 use juggler_math::Ray;
 
 mod albedo;
 mod ambient_occlusion;
 mod classic;
 mod depth;
+mod direct;
 mod emit;
 mod normals;
+mod path;
+mod trail;
 
-pub use emit::{Emit, Path};
+pub use emit::{Emit, PathState};
 pub(crate) use emit::{Harvest, Queue};
+pub use trail::{Counts, Trail};
 
 /// Light transport, nothing else.
 pub trait Integrator: Send + Sync {
     /// `ray`, its end drawn in, met a surface: what that adds, which lights to ask, where the light came from.
-    fn vertex(&self, world: &World, ray: &Ray, path: &Path, vertex: &Vertex, emit: &mut Emit);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit);
     /// `ray` left the world: what it adds.
-    fn escape(&self, _world: &World, _ray: &Ray, _emit: &mut Emit) {}
+    fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, _emit: &mut Emit) {}
+    /// What its shadow rays keep.
+    fn shadows(&self) -> Shadows {
+        Shadows::Filtered
+    }
 }
 
 closed_set! {
     /// Every integrator. In JSON: `{"classic": {"max_depth": 10}}`, or short `"classic"`.
     pub enum AnyIntegrator: Integrator {
-        classic::Classic, ambient_occlusion::AmbientOcclusion, albedo::Albedo, normals::Normals, depth::Depth,
+        classic::Classic, path::Path, direct::Direct, ambient_occlusion::AmbientOcclusion, albedo::Albedo, normals::Normals, depth::Depth,
     }
 }
 
@@ -43,6 +51,8 @@ impl AnyIntegrator {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Classic(_) => "classic",
+            Self::Path(_) => "path",
+            Self::Direct(_) => "direct",
             Self::AmbientOcclusion(_) => "ambient_occlusion",
             Self::Albedo(_) => "albedo",
             Self::Normals(_) => "normals",

@@ -4,7 +4,7 @@
 //! {"normals": {}}
 //! ```
 
-use super::{Emit, Integrator, Path};
+use super::{Emit, Integrator, PathState};
 use crate::world::{Vertex, World};
 use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Normals {}
 
 impl Integrator for Normals {
-    fn vertex(&self, _world: &World, _ray: &Ray, _path: &Path, vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, _world: &World, _ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
         let n = vertex.surface.shading_normal * 0.5 + 0.5;
         emit.add(Rgb::new(n.x, n.y, n.z));
     }

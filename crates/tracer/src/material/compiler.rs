@@ -130,7 +130,7 @@ mod tests {
         assert!(red.0 < board.0);
         assert_eq!(compiler.names().collect::<Vec<_>>(), ["board", "red"]);
         let table = compiler.finish().unwrap();
-        let diffuse = |id, x| table.phong(id, &Surface::new(Vec3::X * x, 0.0, Vec3::Y, Vec2::ZERO)).diffuse;
+        let diffuse = |id, x| table.phong(id, &Surface::new(Vec3::X * x, 0.0, Vec3::Y, Vec2::ZERO)).unwrap().diffuse;
         assert_eq!(diffuse(red, 0.0), Rgb::new(1.0, 0.0, 0.0));
         assert_eq!((diffuse(board, 1.0), diffuse(board, 3.0)), (Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 1.0, 0.0)));
     }

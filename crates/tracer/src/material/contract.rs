@@ -24,7 +24,7 @@ fn compile(json: &str) -> Result<(MaterialTable, MaterialId), MaterialError> {
 
 fn lobe(json: &str, x: f32) -> PhongLobe {
     let (table, id) = compile(json).unwrap();
-    *table.phong(id, &at(x))
+    *table.phong(id, &at(x)).unwrap()
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn the_early_steps_of_the_article_divide_diffuse_light_by_pi() {
 fn textures_are_asked_at_each_point() {
     let json = r#"{"phong": {"diffuse": "tiles", "ambient": 0.5, "specular": "tiles", "transparency": "tiles"}}"#;
     let (table, id) = compile(json).unwrap();
-    let (even, odd) = (*table.phong(id, &at(0.5)), *table.phong(id, &at(1.5)));
+    let (even, odd) = (*table.phong(id, &at(0.5)).unwrap(), *table.phong(id, &at(1.5)).unwrap());
     let tile = Rgb::new(0.2, 0.4, 0.6);
     assert_eq!((even.diffuse, even.ambient), (tile, tile * 0.5));
     assert_eq!(even.specular, Rgb::splat(tile.luminance()));
@@ -89,9 +89,9 @@ fn transparency_is_found_through_checkerboards() {
 fn numbers_that_are_no_material_are_black() {
     let (table, id) = compile(r#"{"phong": {}}"#).unwrap();
     let missing = MaterialId(id.0 + 1);
-    assert_eq!(*table.phong(missing, &at(0.0)), PhongLobe::BLACK);
+    assert_eq!(*table.phong(missing, &at(0.0)).unwrap(), PhongLobe::BLACK);
     assert!(table.filter(missing, &at(0.0)).is_black() && !table.is_transparent(missing));
-    assert_eq!(*MaterialTable::default().phong(id, &at(0.0)), PhongLobe::BLACK);
+    assert_eq!(*MaterialTable::default().phong(id, &at(0.0)).unwrap(), PhongLobe::BLACK);
 }
 
 #[test]

@@ -6,18 +6,31 @@ use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::{Deserialize, Deserializer, Serialize};
 
+mod boundary;
 mod checkerboard;
+mod compiled;
 mod compiler;
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod emissive;
 mod error;
+mod input;
+mod mask;
+mod mix;
 mod phong;
+mod shade;
 mod table;
 
 #[cfg(test)]
 mod contract;
 
+pub use compiled::{Compiled, Physical};
 pub use compiler::{MAX_NESTING, MaterialCompiler};
+pub use emissive::{Glow, Sides};
 pub use error::MaterialError;
 pub use phong::{DiffuseNormalization, Spread};
+pub use shade::{Shade, View};
 pub use table::MaterialTable;
 
 /// A material's place in the [`MaterialTable`].
@@ -71,15 +84,6 @@ impl<'de> Deserialize<'de> for MaterialRef {
     }
 }
 
-/// What a description becomes: all names looked up.
-#[derive(Clone, Debug)]
-pub enum Compiled {
-    /// The classic model.
-    Phong(phong::CompiledPhong),
-    /// Two materials in alternating cells.
-    Checkerboard(checkerboard::CompiledCheckerboard),
-}
-
 /// Looks up what a material names while it is compiled.
 pub trait Resolver {
     /// The scene's textures.
@@ -100,7 +104,14 @@ closed_set! {
     /// Every material. In JSON: `{"phong": {"diffuse": [0.8, 0.1, 0.1]}}`.
     pub enum AnyMaterial: Material {
         phong::Phong,
+        diffuse::Diffuse,
+        conductor::Conductor,
+        dielectric::Dielectric,
+        emissive::Emissive,
         checkerboard::Checkerboard,
+        mask::Mask,
+        mix::Mix,
+        boundary::Boundary,
     }
 }
 

@@ -16,7 +16,7 @@
 //! or colours per channel); its kD stands in `diffuse`, its kS in `highlight_color` with `specular` 1.
 
 use super::error::in_range;
-use super::{Compiled, Material, MaterialError, Resolver};
+use super::{Compiled, Glow, Material, MaterialError, Resolver, Sides};
 use crate::bsdf::{Cone, Highlight, Phong as PhongLobe};
 use crate::texture::{Input, Lookup, Slot, TextureTable};
 use juggler_math::Rgb;
@@ -260,6 +260,16 @@ impl CompiledPhong {
             Some(slots) => textures.color(&slots.transparency, &at()),
             None => self.fixed.transparency,
         }
+    }
+
+    /// How it shines, if it does: to both sides.
+    pub fn glow(&self) -> Option<Glow> {
+        let radiance = match self.textured.as_ref().map(|slots| &slots.emission) {
+            Some(Slot::Texture(_)) => None,
+            _ if self.fixed.emission.is_black() => return None,
+            _ => Some(self.fixed.emission),
+        };
+        Some(Glow { radiance, sides: Sides::Both })
     }
 
     /// Whether it differs from place to place.

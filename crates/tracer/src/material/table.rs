@@ -1,7 +1,9 @@
 //! All materials of a world, ready to be asked.
 
-use super::{Compiled, MaterialId, lookup, phong::CompiledPhong};
-use crate::bsdf::Phong as PhongLobe;
+use super::shade::facing_normal;
+use super::{Compiled, Glow, MaterialId, Shade, View, lookup};
+use crate::bsdf::{Bsdf, Phong as PhongLobe};
+use crate::medium::{Interior, InteriorId};
 use crate::surface::Surface;
 use crate::texture::TextureTable;
 use juggler_math::Rgb;
@@ -13,9 +15,31 @@ use std::borrow::Cow;
 pub struct MaterialTable {
     /// A material refers only to earlier ones.
     materials: Vec<Compiled>,
-    /// Of each material, whether light gets through it anywhere.
-    transparent: Vec<bool>,
+    facts: Vec<Facts>,
+    interiors: Vec<Interior>,
     textures: TextureTable,
+}
+
+/// What holds for a material wherever it is asked.
+#[derive(Clone, Copy, Debug)]
+struct Facts {
+    /// The classic integrator's shadow rays may come through somewhere.
+    transparent: bool,
+    /// Light may pass as if nothing were there.
+    holes: bool,
+    /// It differs from place to place.
+    textured: bool,
+    /// Light may go through it, so that its frame stands on the outside.
+    transmissive: bool,
+    /// How it shines, if it does.
+    glow: Option<Glow>,
+    /// What is behind it.
+    interior: Option<InteriorId>,
+}
+
+impl Facts {
+    const NONE: Self =
+        Self { transparent: false, holes: false, textured: false, transmissive: false, glow: None, interior: None };
 }
 
 impl MaterialTable {
@@ -24,10 +48,25 @@ impl MaterialTable {
     }
 
     pub(super) fn push(&mut self, compiled: Compiled) -> MaterialId {
-        self.transparent.push(match &compiled {
-            Compiled::Phong(phong) => phong.is_transparent(),
-            Compiled::Checkerboard(board) => board.choices().iter().any(|id| self.is_transparent(*id)),
-        });
+        let parts = compiled.parts();
+        let any = |fact: fn(&Facts) -> bool| parts.iter().any(|part| fact(&self.facts(*part)));
+        let holes = match &compiled {
+            Compiled::Mask(material) => !material.is_solid(),
+            Compiled::Boundary(_) => true,
+            _ => false,
+        };
+        let classic = matches!(&compiled, Compiled::Phong(material) if material.is_transparent());
+        let facts = Facts {
+            transparent: holes || classic || any(|part| part.transparent),
+            holes: holes || any(|part| part.holes),
+            textured: compiled.is_textured() || any(|part| part.textured),
+            transmissive: matches!(&compiled, Compiled::Physical(material) if material.is_transmissive())
+                || any(|part| part.transmissive),
+            glow: self.glow_of(&compiled),
+            interior: None,
+        };
+        let interior = self.interior_of(&compiled, &parts);
+        self.facts.push(Facts { interior, ..facts });
         self.materials.push(compiled);
         MaterialId(u32::try_from(self.materials.len() - 1).unwrap_or(u32::MAX))
     }
@@ -37,39 +76,154 @@ impl MaterialTable {
         &self.textures
     }
 
-    /// The numbers of material `id` at a point of a surface (world space, normals as the shape gives them);
-    /// black for a number that is no material.
+    fn facts(&self, id: MaterialId) -> Facts {
+        self.facts.get(id.0 as usize).copied().unwrap_or(Facts::NONE)
+    }
+
+    /// What is behind a material: of several, what the first has.
+    fn interior_of(&mut self, compiled: &Compiled, parts: &[MaterialId]) -> Option<InteriorId> {
+        if let Some(interior) = compiled.interior() {
+            let id = InteriorId::new(self.interiors.len())?;
+            self.interiors.push(interior);
+            return Some(id);
+        }
+        parts.iter().find_map(|part| self.facts(*part).interior)
+    }
+
+    /// What is behind material `id`, if light comes there.
     #[inline]
-    pub fn phong(&self, id: MaterialId, surface: &Surface) -> Cow<'_, PhongLobe> {
-        match self.leaf(id, surface) {
-            Some(phong) => phong.eval(&self.textures, || lookup(surface)),
-            None => Cow::Borrowed(&PhongLobe::BLACK),
+    pub fn interior(&self, id: MaterialId) -> Option<InteriorId> {
+        self.facts(id).interior
+    }
+
+    /// All that is behind materials.
+    pub fn interiors(&self) -> &[Interior] {
+        &self.interiors
+    }
+
+    fn glow_of(&self, compiled: &Compiled) -> Option<Glow> {
+        let glows = || compiled.parts().into_iter().filter_map(|part| self.facts(part).glow);
+        // What shines here and not there shines somehow: whoever wants to know asks at each place.
+        let somewhere = |glow: Glow| Glow { radiance: None, ..glow };
+        match compiled {
+            Compiled::Phong(phong) => phong.glow(),
+            Compiled::Physical(_) | Compiled::Boundary(_) => None,
+            Compiled::Emissive(emissive) => match glows().next() {
+                None => Some(emissive.glow()).filter(|glow| glow.radiance.is_none_or(|light| !light.is_black())),
+                Some(other) => Some(somewhere(emissive.glow().and(other))),
+            },
+            Compiled::Checkerboard(_) | Compiled::Mix(_) | Compiled::Mask(_) => {
+                glows().reduce(Glow::and).map(somewhere)
+            }
         }
     }
 
-    /// What a shadow ray keeps when it crosses material `id` at this point: its transparency.
-    pub fn filter(&self, id: MaterialId, surface: &Surface) -> Rgb {
-        self.leaf(id, surface).map_or(Rgb::BLACK, |phong| phong.filter(&self.textures, || lookup(surface)))
+    /// How material `id` shines, if it does anywhere.
+    pub fn glow(&self, id: MaterialId) -> Option<Glow> {
+        self.facts(id).glow
     }
 
-    /// Whether light gets through material `id` anywhere; if not, [`MaterialTable::filter`] is black everywhere.
+    /// The numbers of the classic material `id` at a point of a surface (world space, normals as the shape gives them);
+    /// `None` for a material of another kind, black for a number that is no material.
+    #[inline]
+    pub fn phong(&self, id: MaterialId, surface: &Surface) -> Option<Cow<'_, PhongLobe>> {
+        match self.leaf(id, surface) {
+            Some(Compiled::Phong(phong)) => Some(phong.eval(&self.textures, || lookup(surface))),
+            Some(_) => None,
+            None => Some(Cow::Borrowed(&PhongLobe::BLACK)),
+        }
+    }
+
+    /// Material `id` at a point; black for a number that is no material.
+    pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
+        let transmissive = self.facts(id).transmissive;
+        let normal = view.surface.shading_normal;
+        let normal = if transmissive { normal } else { facing_normal(view, normal) };
+        let mut shade = Shade { transmissive, ..Shade::black(normal) };
+        let (mut id, mut view) = (id, *view);
+        // Every part is an earlier material, so this ends.
+        while let Some(compiled) = self.materials.get(id.0 as usize) {
+            id = match compiled {
+                Compiled::Phong(phong) => {
+                    let lobe = phong.eval(&self.textures, || view.lookup());
+                    return Self::classic(&lobe, &view, shade);
+                }
+                Compiled::Physical(physical) => {
+                    shade.bsdf = physical.bsdf(&self.textures, &view);
+                    return shade;
+                }
+                Compiled::Checkerboard(board) => board.pick(view.surface),
+                Compiled::Mix(mix) => {
+                    let (part, rest) = mix.pick(&self.textures, &view);
+                    view.pick = rest;
+                    part
+                }
+                Compiled::Mask(mask) => {
+                    shade.opacity *= mask.opacity(&self.textures, &view);
+                    mask.material
+                }
+                Compiled::Boundary(_) => return Shade { opacity: 0.0, ..shade },
+                Compiled::Emissive(emissive) => {
+                    shade.emission += emissive.emission(&self.textures, &view);
+                    emissive.material
+                }
+            };
+        }
+        shade
+    }
+
+    /// The classic material as physics would have it.
+    fn classic(lobe: &PhongLobe, _view: &View, shade: Shade) -> Shade {
+        let bsdf: Bsdf = crate::bsdf::Lambert { albedo: lobe.diffuse }.into();
+        Shade { emission: shade.emission + lobe.emission, bsdf, lamp_scale: std::f32::consts::PI, ..shade }
+    }
+
+    /// What a shadow ray of the classic integrator keeps when it crosses material `id` at this point: its
+    /// transparency.
+    pub fn filter(&self, id: MaterialId, surface: &Surface) -> Rgb {
+        match self.leaf(id, surface) {
+            Some(Compiled::Phong(phong)) => phong.filter(&self.textures, || lookup(surface)),
+            Some(Compiled::Mask(mask)) => {
+                let opacity = mask.opacity(&self.textures, &View::of(surface));
+                self.filter(mask.material, surface) * opacity + Rgb::splat(1.0 - opacity)
+            }
+            Some(Compiled::Boundary(_)) => Rgb::WHITE,
+            Some(Compiled::Emissive(emissive)) => self.filter(emissive.material, surface),
+            _ => Rgb::BLACK,
+        }
+    }
+
+    /// Share of light that passes material `id` at this point as if nothing were there.
+    pub fn gap(&self, id: MaterialId, surface: &Surface) -> f32 {
+        if !self.has_holes(id) {
+            return 0.0;
+        }
+        1.0 - self.shade(id, &View::of(surface)).opacity
+    }
+
+    /// Whether [`MaterialTable::filter`] is anything but black anywhere.
     pub fn is_transparent(&self, id: MaterialId) -> bool {
-        self.transparent.get(id.0 as usize).copied().unwrap_or(false)
+        self.facts(id).transparent
+    }
+
+    /// Whether [`MaterialTable::gap`] is anything but 0 anywhere.
+    pub fn has_holes(&self, id: MaterialId) -> bool {
+        self.facts(id).holes
     }
 
     /// Whether material `id` differs from place to place.
     pub fn is_textured(&self, id: MaterialId) -> bool {
-        !matches!(self.materials.get(id.0 as usize), Some(Compiled::Phong(phong)) if !phong.is_textured())
+        self.facts(id).textured
     }
 
     /// The material that stands at this point once all checkerboards have chosen. Every choice is an
     /// earlier material, so this ends.
     #[inline]
-    fn leaf(&self, mut id: MaterialId, surface: &Surface) -> Option<&CompiledPhong> {
+    fn leaf(&self, mut id: MaterialId, surface: &Surface) -> Option<&Compiled> {
         loop {
             match self.materials.get(id.0 as usize)? {
-                Compiled::Phong(phong) => return Some(phong),
                 Compiled::Checkerboard(board) => id = board.pick(surface),
+                other => return Some(other),
             }
         }
     }

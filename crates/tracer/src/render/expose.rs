@@ -2,7 +2,7 @@
 
 use super::{Job, Work};
 use crate::camera::LANES;
-use crate::integrator::{Path, Queue};
+use crate::integrator::{PathState, Queue, Trail};
 use crate::sampler::Sampler;
 use juggler_math::{Rgb, UVec2, Vec2};
 use std::ops::Range;
@@ -98,8 +98,14 @@ impl<'j> Pixel<'j> {
         if self.moves { self.sampler(sample, TIME).next_1d() } else { 0.0 }
     }
 
-    fn path(&self, sample: u32, slot: u32, weight: f32) -> Path {
-        Path { weight: Rgb::splat(weight), depth: 0, sampler: self.sampler(sample, FILM + LENS), slot }
+    fn path(&self, sample: u32, slot: u32, weight: f32) -> PathState {
+        PathState {
+            weight: Rgb::splat(weight),
+            depth: 0,
+            sampler: self.sampler(sample, FILM + LENS),
+            trail: Trail::CAMERA,
+            slot,
+        }
     }
 
     /// The rays of the samples from `first` on; `places` is room to work in.

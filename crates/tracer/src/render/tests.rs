@@ -5,7 +5,7 @@ use crate::background::{AnyBackground, Solid};
 use crate::bsdf::fresnel;
 use crate::camera::{AnyCamera, Perspective};
 use crate::film::{Box as BoxFilter, Reconstruction};
-use crate::integrator::{AnyIntegrator, Classic, Emit, Integrator, Path};
+use crate::integrator::{AnyIntegrator, Classic, Emit, Integrator, PathState};
 use crate::light::AnyLight;
 use crate::material::{AnyMaterial, MaterialCompiler};
 use crate::sampler::{Pattern, Sobol, Spread};
@@ -226,9 +226,9 @@ fn a_single_sample_looks_through_the_pixels_centre() {
 struct Broken;
 
 impl Integrator for Broken {
-    fn vertex(&self, _: &World, _: &Ray, _: &Path, _: &Vertex, _: &mut Emit) {}
+    fn vertex(&self, _: &World, _: &Ray, _: &PathState, _: &Vertex, _: &mut Emit) {}
 
-    fn escape(&self, _: &World, ray: &Ray, emit: &mut Emit) {
+    fn escape(&self, _: &World, ray: &Ray, _: &PathState, emit: &mut Emit) {
         let column = (ray.direction.x * 40.0).floor() as i32;
         emit.add(Rgb::splat(if column.rem_euclid(3) == 0 { f32::NAN } else { column as f32 }));
     }

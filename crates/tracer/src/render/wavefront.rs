@@ -10,7 +10,7 @@ use super::expose::expose;
 use super::{Control, Job, Rays, Stopped, Work};
 use crate::film::{Accumulator, Rect, Run, Tile, runs};
 use crate::integrator::{Emit, Harvest, Queue};
-use crate::world::WorldHit;
+use crate::world::{Shadows, WorldHit};
 use juggler_math::Rgb;
 use std::ops::Range;
 
@@ -128,7 +128,7 @@ impl<'j> Engine<'j> {
                 let vertex = world.vertex(ray, hit);
                 integrator.vertex(world, ray, path, &vertex, &mut emit);
             } else {
-                integrator.escape(world, ray, &mut emit);
+                integrator.escape(world, ray, path, &mut emit);
             }
             let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);
             if last_of_slot && self.harvest.next.len() + self.harvest.pending > WAITING {
@@ -143,16 +143,21 @@ impl<'j> Engine<'j> {
         let Harvest { radiance, shadows, pending, .. } = &mut self.harvest;
         *pending = 0;
         let last = shadows.len().saturating_sub(1);
+        let kept = self.job.integrator.shadows();
         for (number, queue) in shadows.iter_mut().enumerate() {
             self.rays.shadow += queue.rays.len() as u64;
             self.through.resize(queue.rays.len(), Rgb::BLACK);
-            if number < last {
-                self.job.world.transmittance_packet(&queue.rays, &mut self.through);
-            } else {
-                self.job.world.transmittance_batch(&queue.rays, &mut self.through);
+            let (rays, through) = (&queue.rays, &mut self.through);
+            match kept {
+                Shadows::Physical if self.job.world.dims_shadows() => {
+                    let inside = queue.gains.iter().map(|gain| gain.inside);
+                    self.job.world.transmittance_inside(rays, inside, through);
+                }
+                _ if number < last => self.job.world.transmittance_packet(rays, kept, through),
+                _ => self.job.world.transmittance_batch(rays, kept, through),
             }
-            for ((slot, arriving), through) in queue.gains.iter().zip(&self.through) {
-                radiance[*slot as usize] += *arriving * *through;
+            for (gain, through) in queue.gains.iter().zip(through) {
+                radiance[gain.slot as usize] += gain.radiance * *through;
             }
             queue.rays.clear();
             queue.gains.clear();

@@ -105,6 +105,13 @@ impl Sampler {
         }
     }
 
+    /// The numbers from `count` dimensions further on.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, count: u32) -> Self {
+        Self { dimension: self.dimension + count, ..*self }
+    }
+
     /// Leaves out `count` dimensions.
     pub fn skip(&mut self, count: u32) {
         self.dimension += count;

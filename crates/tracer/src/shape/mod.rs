@@ -21,6 +21,7 @@ mod sphere;
 mod triangle;
 mod tube;
 
+pub(crate) use arithmetic::within_floats;
 pub use mesh::{MeshData, Morph};
 pub use sphere::{cross_sphere, intersect_sphere, longitude_latitude, sphere_surface};
 

@@ -1,5 +1,6 @@
 //! Counts for reports: what is placed, and what is stored for it.
 
+use super::merged::Merged;
 use super::{Content, Level};
 use crate::shape::AnyShape;
 use std::collections::BTreeSet;
@@ -37,7 +38,7 @@ impl Geometry {
         };
         let mut stored = Stored::default();
         for level in levels(top) {
-            geometry.bvh_bytes += level.bvh.bytes();
+            geometry.bvh_bytes += level.bvh.bytes() + level.merged.as_ref().map_or(0, Merged::bytes);
             geometry.geometry_bytes += size_of_val(level.objects.as_slice()) + size_of_val(level.items.as_slice());
             let shapes = level.objects.iter().filter_map(|placed| placed.content.as_shape());
             shapes.for_each(|shape| stored.add(shape));

@@ -1,7 +1,8 @@
 //! A light that shines from somewhere, with what is asked of it at every vertex.
 
+use crate::emitter::LightBounds;
 use crate::light::AnyLight;
-use juggler_math::{Rgb, Vec3};
+use juggler_math::{Aabb, Rgb, Vec3};
 
 /// A light, still or moving.
 #[derive(Clone, Debug)]
@@ -45,6 +46,27 @@ impl Lamp {
             first: Source::new(first.clone()),
             others: others.iter().cloned().map(Source::new).collect(),
         }
+    }
+
+    /// What the light tree needs to know, over all its time; `None` for one without a place.
+    pub fn bounds(&self) -> Option<LightBounds> {
+        let all = || std::iter::once(&self.first).chain(&self.others);
+        let mut bounds: Option<LightBounds> = None;
+        for source in all() {
+            let (centre, radius) = source.ball?;
+            let ball = Aabb { min: centre - radius, max: centre + radius };
+            let power = source.light.power(1.0);
+            let (bounds_of_all, most) = bounds.map_or((ball, power), |b| (b.bounds.union(ball), b.power.max(power)));
+            bounds = Some(LightBounds {
+                bounds: bounds_of_all,
+                axis: Vec3::Z,
+                cos_theta_o: -1.0,
+                cos_theta_e: 0.0,
+                power: most,
+                two_sided: false,
+            });
+        }
+        bounds
     }
 
     /// Whether it is not always the same.

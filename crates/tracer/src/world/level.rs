@@ -3,11 +3,13 @@
 
 use super::items::{Item, Placed};
 use super::large::{self, Large, Order};
+use super::merged::{self, Merged};
 use super::{Content, Object, Vertex, WorldHit};
 use crate::material::{MaterialId, MaterialTable};
 use crate::shape::AnyShape;
 use juggler_bvh::{Bvh, Quality, SimdLevel};
 use juggler_math::{Aabb, Ray, Transform};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Most objects that a world may place, those of groups counted as often as they are placed: each has a number
@@ -32,6 +34,8 @@ pub struct Level {
     pub(super) bvh: Bvh,
     /// Large meshes beside the hierarchy, in the world's own level only: others are met by a packet at most.
     pub(super) large: Vec<Large>,
+    /// Small meshes beside the hierarchy as one, in the world's own level only.
+    pub(super) merged: Option<Merged>,
     /// Places of the objects without an end.
     pub(super) unbounded: Vec<u32>,
     bounds: Aabb,
@@ -76,22 +80,25 @@ impl Level {
     /// Builds the hierarchy over all bounded objects. At most [`MAX_OBJECTS`] shapes and [`MAX_DEPTH`] levels below
     /// each other, which whoever makes levels from files must see to.
     pub fn new(objects: Vec<Object>) -> Self {
-        Self::beside(objects, &[])
+        Self::beside(objects, &[], &[])
     }
 
     /// The world's own level.
     pub(super) fn top(objects: Vec<Object>) -> Self {
         let large = large::places(&objects);
-        Self::beside(objects, &large)
+        let small = merged::places(&objects, &large);
+        Self::beside(objects, &large, &small)
     }
 
-    /// The objects at the places `large` stand beside the hierarchy.
-    fn beside(objects: Vec<Object>, large: &[u32]) -> Self {
+    /// The objects at the places `large` stand beside the hierarchy, and the meshes at `small` as one.
+    fn beside(objects: Vec<Object>, large: &[u32], small: &[u32]) -> Self {
         let totals = Totals::of(&objects);
         debug_assert!(totals.shapes <= MAX_OBJECTS && totals.depth <= MAX_DEPTH);
         let firsts = if totals.instances == 0 { Vec::new() } else { firsts(&objects) };
         let number = |place: u32| firsts.get(place as usize).copied().unwrap_or(place);
-        let places = (0..objects.len() as u32).filter(|place| !large.contains(place));
+        let merged = Merged::new(&objects, small, number);
+        let apart: BTreeSet<u32> = large.iter().chain(small).copied().collect();
+        let places = (0..objects.len() as u32).filter(|place| !apart.contains(place));
         let (bounded, unbounded): (Vec<u32>, Vec<u32>) = places.partition(|i| objects[*i as usize].is_bounded());
         let boxes: Vec<Aabb> = bounded.iter().map(|place| objects[*place as usize].bounds()).collect();
         let bvh = Bvh::build(&boxes, Quality::Balanced);
@@ -101,13 +108,14 @@ impl Level {
         let bounds = objects.iter().map(Object::bounds).fold(Aabb::EMPTY, Aabb::union);
         let moves = objects.iter().any(Object::moves);
         let objects = objects.into_iter().map(Placed::new).collect();
-        Self { objects, firsts, items, bvh, large, unbounded, bounds, moves, totals }
+        Self { objects, firsts, items, bvh, large, merged, unbounded, bounds, moves, totals }
     }
 
     /// The same level and all below it for another vector unit than the best of this machine.
     pub(super) fn at_simd_level(&self, simd: SimdLevel) -> Self {
         let mut level = self.clone();
         level.bvh = level.bvh.with_simd_level(simd);
+        level.merged = level.merged.map(|merged| merged.with_simd_level(simd));
         for placed in &mut level.objects {
             match &mut placed.content {
                 Content::Level(below) => *below = Arc::new(below.at_simd_level(simd)),
@@ -173,7 +181,7 @@ impl Level {
             Content::Shape(shape) => {
                 let material = material.unwrap_or(MaterialId::NONE);
                 let surface = placed.surface(shape, ray, &hit.hit, !materials.is_textured(material));
-                Vertex { surface, material, object: hit.object }
+                Vertex { surface, material, object: hit.object, part: hit.hit.part }
             }
             Content::Level(level) => {
                 level.instanced(&placed.motion.at(ray.time), ray, hit, number, material, materials)

@@ -2,17 +2,24 @@
 
 use crate::background::AnyBackground;
 use crate::bsdf::Phong;
-use crate::material::{MaterialId, MaterialTable};
+use crate::material::{MaterialId, MaterialTable, Shade, View};
+use crate::medium::{Interior, InteriorId};
 use crate::shape::Hit;
 use crate::surface::Surface;
-use juggler_math::{Aabb, Ray, Rgb, Vec2};
+use emitters::Emitters;
+use glowing::Glowing;
+use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use std::borrow::Cow;
 
+mod areas;
+mod emitters;
 mod geometry;
+mod glowing;
 mod items;
 mod lamp;
 mod large;
 mod level;
+mod merged;
 mod object;
 mod trace;
 
@@ -21,11 +28,13 @@ mod precision;
 #[cfg(test)]
 mod tests;
 
+pub use emitters::{Lighting, Receiver};
 pub use geometry::Geometry;
 pub use juggler_bvh::{SimdLevel, simd_levels};
 pub use lamp::{Lamp, Source};
 pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
 pub use object::{Content, Object};
+pub use trace::Shadows;
 
 /// What a ray met, before anything is worked out about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +74,8 @@ pub struct Vertex {
     pub material: MaterialId,
     /// Number of the shape, instances of levels counted as what they hold.
     pub object: u32,
+    /// Triangle or face of the shape.
+    pub part: u32,
 }
 
 /// Everything that can be seen.
@@ -75,7 +86,10 @@ pub struct World {
     lamps: Vec<Lamp>,
     ambient: Rgb,
     background: AnyBackground,
+    emitters: Emitters,
     has_transparency: bool,
+    has_holes: bool,
+    has_media: bool,
     moves: bool,
 }
 
@@ -88,13 +102,17 @@ impl World {
         background: AnyBackground,
     ) -> Self {
         let top = Level::top(objects);
-        let objects = geometry::levels(&top).into_iter().flat_map(|level| &level.objects);
-        let has_transparency = objects.filter_map(|placed| placed.material).any(|id| materials.is_transparent(id));
+        let levels = geometry::levels(&top);
+        let used = || levels.iter().flat_map(|level| &level.objects).filter_map(|placed| placed.material);
+        let has_transparency = used().any(|id| materials.is_transparent(id));
+        let has_holes = used().any(|id| materials.has_holes(id));
+        let has_media = materials.interiors().iter().any(|interior| !interior.medium.is_clear());
         let mut lamps: Vec<Lamp> = lights.into_iter().map(Into::into).collect();
         let ambient = lamps.iter().fold(Rgb::BLACK, |sum, lamp| sum + lamp.ambient);
         lamps.retain(|lamp| lamp.ambient.is_black());
         let moves = top.moves() || lamps.iter().any(Lamp::moves);
-        Self { top, materials, lamps, ambient, background, has_transparency, moves }
+        let emitters = Emitters::new(&lamps, Glowing::all(&top, &materials));
+        Self { top, materials, lamps, ambient, background, emitters, has_transparency, has_holes, has_media, moves }
     }
 
     /// The same world for another vector unit than the best of this machine: for tests and measurements.
@@ -133,10 +151,29 @@ impl World {
         self.top.shape_bounds(number)
     }
 
-    /// The numbers of the material at a vertex.
+    /// The numbers of the classic material at a vertex; `None` where it is of another kind.
     #[inline]
-    pub fn phong(&self, vertex: &Vertex) -> Cow<'_, Phong> {
+    pub fn phong(&self, vertex: &Vertex) -> Option<Cow<'_, Phong>> {
         self.materials.phong(vertex.material, &vertex.surface)
+    }
+
+    /// The material at a vertex, seen from `wo`, with an index of refraction of `around_ior` around it; `pick` is a number in [0, 1) for what is one thing or another by
+    /// chance.
+    #[inline]
+    pub fn shade(&self, vertex: &Vertex, wo: Vec3, around_ior: f32, pick: f32) -> Shade {
+        self.materials.shade(vertex.material, &View { surface: &vertex.surface, wo, around_ior, pick })
+    }
+
+    /// What is behind the surface of a vertex, if light comes there.
+    #[inline]
+    pub fn interior(&self, vertex: &Vertex) -> Option<InteriorId> {
+        self.materials.interior(vertex.material)
+    }
+
+    /// All that is behind surfaces.
+    #[inline]
+    pub fn interiors(&self) -> &[Interior] {
+        self.materials.interiors()
     }
 
     /// The surface where `ray` made `hit`.

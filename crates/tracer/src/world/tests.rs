@@ -162,9 +162,9 @@ fn equals_brute_force(world: &World, rounds: usize) {
         assert_eq!(alone, expected, "single, round {round}");
         let open: Vec<Rgb> = expected.iter().map(|h| if h.is_some() { Rgb::BLACK } else { Rgb::WHITE }).collect();
         let mut through = vec![Rgb::BLACK; rays.len()];
-        world.transmittance_packet(&rays, &mut through);
+        world.transmittance_packet(&rays, Shadows::Filtered, &mut through);
         assert_eq!(through, open, "shadow packet, round {round}");
-        world.transmittance_batch(&rays, &mut through);
+        world.transmittance_batch(&rays, Shadows::Filtered, &mut through);
         assert_eq!(through, open, "shadow batch, round {round}");
     }
     assert!(met > rounds * 3 / 2, "only {met} rays met anything");

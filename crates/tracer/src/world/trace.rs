@@ -2,11 +2,22 @@
 
 use super::items::{Item, Placed};
 use super::large::Order;
-use super::{Content, Level, World, WorldHit};
+use super::{Content, Level, Vertex, World, WorldHit};
+use crate::medium::Interiors;
 use arrayvec::ArrayVec;
 use juggler_bvh::{Leaf, PACKET};
 use juggler_math::{Ray, Rgb};
+use std::cell::Cell;
 use std::ops::Range;
+
+/// What a shadow ray keeps on its way to a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadows {
+    /// What transparent materials filter, straight on, as classic pictures have it.
+    Filtered,
+    /// What passes holes; whatever else is in the way is in the way.
+    Physical,
+}
 
 /// How often a shadow ray may cross transparent surfaces before it counts as blocked.
 const MAX_CROSSINGS: u32 = 64;
@@ -118,6 +129,9 @@ impl Level {
         for large in &self.large {
             large.closest(&self.objects, rays, order, hits);
         }
+        if let Some(merged) = &self.merged {
+            merged.closest(rays, order, hits);
+        }
     }
 
     /// Whether each of the rays meets anything.
@@ -136,6 +150,9 @@ impl Level {
         }
         for large in &self.large {
             large.any(&self.objects, rays, order, occluded);
+        }
+        if let Some(merged) = &self.merged {
+            merged.any(rays, order, occluded);
         }
     }
 
@@ -170,17 +187,17 @@ impl World {
 
     /// How much of a light's radiance comes through along each of any number of rays that go much the same way
     /// as their neighbours.
-    pub fn transmittance_packet(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, Order::Coherent);
+    pub fn transmittance_packet(&self, rays: &[Ray], kept: Shadows, through: &mut [Rgb]) {
+        self.transmittance(rays, kept, through, Order::Coherent);
     }
 
     /// How much of a light's radiance comes through along each of any number of rays.
-    pub fn transmittance_batch(&self, rays: &[Ray], through: &mut [Rgb]) {
-        self.transmittance(rays, through, Order::Any);
+    pub fn transmittance_batch(&self, rays: &[Ray], kept: Shadows, through: &mut [Rgb]) {
+        self.transmittance(rays, kept, through, Order::Any);
     }
 
-    fn transmittance(&self, rays: &[Ray], through: &mut [Rgb], order: Order) {
-        if self.has_transparency {
+    fn transmittance(&self, rays: &[Ray], kept: Shadows, through: &mut [Rgb], order: Order) {
+        if kept == Shadows::Filtered && self.has_transparency {
             for (ray, through) in rays.iter().zip(through) {
                 *through = self.filtered(*ray);
             }
@@ -193,17 +210,57 @@ impl World {
         }
     }
 
+    /// Whether shadow rays may lose some of their light on their way, so that it is to be asked by
+    /// [`World::transmittance_inside`].
+    pub fn dims_shadows(&self) -> bool {
+        self.has_holes || self.has_media
+    }
+
+    /// How much of a light's radiance comes through holes and media along each of any number of rays, which start in
+    /// the solids `inside`.
+    pub fn transmittance_inside(&self, rays: &[Ray], inside: impl Iterator<Item = Interiors>, through: &mut [Rgb]) {
+        for ((ray, inside), through) in rays.iter().zip(inside).zip(through) {
+            *through = self.dimmed(*ray, inside);
+        }
+    }
+
     /// The product of the filters of everything that the ray crosses, nearest first.
     fn filtered(&self, ray: Ray) -> Rgb {
+        let filter = |vertex: &Vertex| self.materials.filter(vertex.material, &vertex.surface);
+        self.crossing(ray, |_| Rgb::WHITE, filter)
+    }
+
+    /// What holes and media leave.
+    fn dimmed(&self, ray: Ray, inside: Interiors) -> Rgb {
+        let inside = Cell::new(inside);
+        let interiors = self.materials.interiors();
+        let left = |distance: f32| match inside.get().top(interiors) {
+            Some(interior) => interior.medium.transmittance(distance),
+            None => Rgb::WHITE,
+        };
+        let gap = |vertex: &Vertex| {
+            if let Some(id) = self.materials.interior(vertex.material) {
+                let enters = vertex.surface.normal.dot(ray.direction) < 0.0;
+                inside.set(if enters { inside.get().entered(id) } else { inside.get().left(id) });
+            }
+            Rgb::splat(self.materials.gap(vertex.material, &vertex.surface))
+        };
+        self.crossing(ray, left, gap)
+    }
+
+    /// What is left of light along a ray: of each stretch between surfaces what `on_the_way` says of its length, of
+    /// each surface what `filter` says.
+    fn crossing(&self, ray: Ray, on_the_way: impl Fn(f32) -> Rgb, filter: impl Fn(&Vertex) -> Rgb) -> Rgb {
         let (mut rest, mut through) = (ray, Rgb::WHITE);
         for _ in 0..MAX_CROSSINGS {
             let mut probe = rest;
             let hit = self.closest(&mut probe);
+            through *= on_the_way(probe.t_max);
             if !hit.is_some() {
                 return through;
             }
             let vertex = self.vertex(&rest, &hit);
-            through *= self.materials.filter(vertex.material, &vertex.surface);
+            through *= filter(&vertex);
             if through.is_black() {
                 return through;
             }

@@ -2,7 +2,7 @@
 
 use super::{job, look, pixels, read, world, world_in_motion};
 use crate::camera::{AnyCamera, Orthographic, Projection, Shot};
-use crate::integrator::{AnyIntegrator, Emit, Path};
+use crate::integrator::{AnyIntegrator, Emit, PathState};
 use crate::render::*;
 use crate::world::Vertex;
 use juggler_math::testing::{chi_squared, z_test};
@@ -88,8 +88,8 @@ fn a_camera_that_moves_over_a_checkerboard_sees_its_mean() {
 struct Clock(Mutex<Vec<f32>>);
 
 impl Integrator for Clock {
-    fn vertex(&self, _: &World, _: &Ray, _: &Path, _: &Vertex, _: &mut Emit) {}
-    fn escape(&self, _world: &World, ray: &Ray, _emit: &mut Emit) {
+    fn vertex(&self, _: &World, _: &Ray, _: &PathState, _: &Vertex, _: &mut Emit) {}
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, _emit: &mut Emit) {
         self.0.lock().unwrap().push(ray.time);
     }
 }

@@ -120,6 +120,11 @@ impl Mesh {
         Self { prepared, ..self.clone() }
     }
 
+    /// Whether its corners move while the shutter is open.
+    pub fn moves(&self) -> bool {
+        self.prepared.as_deref().is_some_and(|prepared| prepared.bvh().is_none())
+    }
+
     /// The arrays, once prepared.
     pub fn data(&self) -> Option<&MeshData> {
         self.prepared.as_deref().map(Prepared::data)

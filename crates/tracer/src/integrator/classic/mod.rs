@@ -7,7 +7,9 @@
 //! {"classic": {"max_depth": 10, "min_weight": 0.004, "occlusion_distance": 100}}
 //! ```
 
-use super::{Emit, Integrator, Path};
+mod physical;
+
+use super::{Emit, Integrator, PathState};
 use crate::bsdf::{Cone, Highlight, Phong, cone, fresnel};
 use crate::sampler::Sampler;
 use crate::surface::Surface;
@@ -52,8 +54,8 @@ struct Seen<'a> {
 }
 
 impl Integrator for Classic {
-    fn vertex(&self, world: &World, ray: &Ray, path: &Path, vertex: &Vertex, emit: &mut Emit) {
-        let phong = world.phong(vertex);
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        let Some(phong) = world.phong(vertex) else { return self.physical(world, ray, path, vertex, emit) };
         let seen = Seen::new(ray, &vertex.surface, &phong);
         let mut sampler = path.sampler;
         self.ambient(world, &seen, sampler, emit);
@@ -67,7 +69,7 @@ impl Integrator for Classic {
         }
     }
 
-    fn escape(&self, world: &World, ray: &Ray, emit: &mut Emit) {
+    fn escape(&self, world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
         emit.add(world.background(ray));
     }
 }
@@ -98,7 +100,7 @@ impl Classic {
     }
 
     /// Mirror and transparency.
-    fn follow(&self, path: &Path, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
+    fn follow(&self, path: &PathState, seen: &Seen, sampler: &Sampler, emit: &mut Emit) {
         let phong = seen.phong;
         if phong.mirror.is_black() && phong.transparency.is_black() {
             return;
@@ -128,7 +130,7 @@ impl Classic {
 
 /// Rays that leave a vertex around one direction.
 struct Bundle<'a> {
-    path: &'a Path,
+    path: &'a PathState,
     seen: &'a Seen<'a>,
     min_weight: f32,
 }

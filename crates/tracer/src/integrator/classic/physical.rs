@@ -1,0 +1,81 @@
+//! Materials that scatter as physics says, in classic pictures: lit by lamps, seen in mirrors and glass, one ray for what
+//! is glossy; nothing diffuse lights anything else but by the ambient light.
+
+use super::Classic;
+use crate::bsdf::{BsdfSample, Scatter};
+use crate::integrator::{Emit, PathState};
+use crate::material::Shade;
+use crate::sampler::Sampler;
+use crate::world::{Lamp, Vertex, World};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
+
+/// A vertex as seen by the one who looks.
+struct Seen<'a> {
+    vertex: &'a Vertex,
+    shade: Shade,
+    /// Unit, towards where the ray came from, in the frame of the scattering function.
+    wo: Vec3,
+    time: f32,
+}
+
+impl Classic {
+    /// A vertex whose material is not the classic one.
+    pub(super) fn physical(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        let mut sampler = path.sampler;
+        let choices = sampler.next_2d();
+        let shade = world.shade(vertex, -ray.direction, 1.0, choices.x);
+        let room = path.depth < self.max_depth;
+        if choices.y >= shade.opacity {
+            if room {
+                emit.go_on(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, 0);
+            }
+            return;
+        }
+        let wo = shade.frame.to_local(-ray.direction);
+        let seen = Seen { vertex, shade, wo, time: ray.time };
+        emit.add(seen.shade.emission + seen.shade.bsdf.albedo(wo) * world.ambient());
+        for (number, lamp) in world.lamps().iter().enumerate() {
+            seen.light(lamp, number, &sampler, emit);
+            sampler.skip(1);
+        }
+        if room {
+            self.reflect(&seen, path, sampler, emit);
+        }
+    }
+
+    /// Mirrors and clear glass, each with a ray of its own, and one ray for all that is glossy.
+    fn reflect(&self, seen: &Seen, path: &PathState, mut sampler: Sampler, emit: &mut Emit) {
+        let deltas = seen.shade.bsdf.deltas(seen.wo);
+        for (child, sample) in (0..).zip(&deltas) {
+            self.follow_sample(seen, path, sample, child, emit);
+        }
+        let sample = seen.shade.bsdf.sample(seen.wo, sampler.next_2d());
+        if let Some(glossy) = sample.filter(|sample| sample.scatter == Scatter::Glossy) {
+            self.follow_sample(seen, path, &glossy, deltas.len() as u32, emit);
+        }
+    }
+
+    fn follow_sample(&self, seen: &Seen, path: &PathState, sample: &BsdfSample, child: u32, emit: &mut Emit) {
+        if (path.weight * sample.weight).max_channel() >= self.min_weight && !sample.weight.is_black() {
+            let direction = seen.shade.frame.to_world(sample.wi);
+            emit.go_on(seen.vertex.surface.spawn(direction, seen.time), sample.weight, child);
+        }
+    }
+}
+
+impl Seen<'_> {
+    /// What one light brings, from one or more places on it.
+    fn light(&self, lamp: &Lamp, number: usize, sampler: &Sampler, emit: &mut Emit) {
+        let Lamp { samples, is_point, .. } = lamp;
+        let share = self.shade.lamp_scale / *samples as f32;
+        for i in 0..*samples {
+            let u = if *is_point { Vec2::ZERO } else { sampler.part(i, *samples).next_2d() };
+            let Some(sample) = lamp.at(self.time).light.sample(self.vertex.surface.point, u) else { continue };
+            let (scattered, _) = self.shade.bsdf.eval_pdf(self.wo, self.shade.frame.to_local(sample.wi));
+            if !scattered.is_black() {
+                let ray = self.vertex.surface.spawn_to(sample.wi, sample.distance, self.time);
+                emit.if_light_visible(number, ray, sample.radiance * scattered * (share / sample.pdf));
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Path tracing: light as it is (Kajiya, The Rendering Equation, 1986).
+//!
+//! At each vertex one light is asked (next-event estimation) and one direction is followed that the material chooses.
+//! What both ways could have found is weighted by the power heuristic (Veach 1997, section 9.2.2).
+//!
+//! ```json
+//! {"path": {"max_depth": 16, "roulette_depth": 4}}
+//! ```
+
+use super::{Emit, Integrator, PathState};
+use crate::world::{Shadows, Vertex, World};
+use juggler_math::{Ray, Rgb};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use surface::Seen;
+
+mod surface;
+mod volume;
+
+/// Numbers of a vertex, in order.
+mod dimension {
+    /// Which of several materials, and whether there is a hole.
+    pub const CHOICE: u32 = 0;
+    /// A light, and a place on it.
+    pub const LIGHT: u32 = 1;
+    /// The direction in which to go on.
+    pub const SCATTER: u32 = 2;
+    /// Whether to go on.
+    pub const ROULETTE: u32 = 3;
+    /// How far through a medium.
+    pub const FLIGHT: u32 = 4;
+}
+
+/// Path tracing: light as it is, of every way that it may take.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Path {
+    /// Stretches of a path from the camera to a light, at most: 1 sees what shines, 2 what it lights.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub max_depth: u32,
+    /// How often a path may be scattered by matte surfaces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 10_000))]
+    pub max_diffuse: Option<u32>,
+    /// How often a path may be scattered by rough mirrors and rough glass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 10_000))]
+    pub max_glossy: Option<u32>,
+    /// How often a path may be mirrored or refracted by what is smooth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 10_000))]
+    pub max_specular: Option<u32>,
+    /// How often a path may be scattered by media.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 10_000))]
+    pub max_volume: Option<u32>,
+    /// Stretches after which paths that are worth little may end by chance (Russian roulette), which costs no
+    /// correctness; nothing for never.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub roulette_depth: Option<u32>,
+}
+
+impl Path {
+    /// What lights light, and nothing that other things reflect.
+    pub(super) const DIRECT: Self = Self {
+        max_depth: 2,
+        max_diffuse: None,
+        max_glossy: None,
+        max_specular: None,
+        max_volume: None,
+        roulette_depth: None,
+    };
+
+    /// The chance with which a path of this throughput goes on, when it does.
+    fn survival(&self, path: &PathState, throughput: Rgb) -> Option<f32> {
+        if self.roulette_depth.is_none_or(|depth| path.depth + 1 < depth) {
+            return Some(1.0);
+        }
+        // Filters may weight samples by less than nothing.
+        let chance = throughput.map(f32::abs).max_channel().min(1.0);
+        (path.sampler.at(dimension::ROULETTE).next_1d() < chance).then_some(chance)
+    }
+}
+
+impl Default for Path {
+    fn default() -> Self {
+        Self { max_depth: 64, roulette_depth: Some(4), ..Self::DIRECT }
+    }
+}
+
+impl Integrator for Path {
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        if self.flies(world, ray, ray.t_max, path, emit) {
+            return;
+        }
+        let interior = world.interior(vertex);
+        if interior.is_some_and(|id| surface::is_covered(world, ray, path, vertex, id)) {
+            return surface::pass(world, ray, path, vertex, emit);
+        }
+        let around = surface::around(world, path, interior);
+        let choice = path.sampler.at(dimension::CHOICE).next_2d();
+        let shade = world.shade(vertex, -ray.direction, around, choice.x);
+        if shade.opacity < 1.0 && choice.y >= shade.opacity {
+            return surface::pass(world, ray, path, vertex, emit);
+        }
+        if !shade.emission.is_black() {
+            let light = || world.light_pdf(&path.trail.receiver(ray.time), ray, vertex);
+            emit.add(shade.emission * path.trail.weight(light));
+        }
+        if path.depth + 1 >= self.max_depth {
+            return;
+        }
+        let seen = Seen::new(ray, vertex, shade, interior);
+        if !seen.shade.bsdf.is_specular() {
+            seen.ask_light(world, path, emit);
+        }
+        self.go_on(&seen, path, emit);
+    }
+
+    fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
+        if !self.flies(world, ray, f32::INFINITY, path, emit) {
+            emit.add(world.background(ray));
+        }
+    }
+
+    fn shadows(&self) -> Shadows {
+        Shadows::Physical
+    }
+}
+
+#[cfg(test)]
+impl Path {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { max_depth: 3, max_diffuse: Some(1), ..Self::DIRECT }]
+    }
+}

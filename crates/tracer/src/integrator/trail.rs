@@ -1,0 +1,72 @@
+//! What a path of light remembers of where it last was scattered.
+
+use crate::medium::Interiors;
+use crate::world::Receiver;
+use juggler_math::Vec3;
+
+/// What a path of light remembers of its last vertex, to know how else it might have come to the next one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trail {
+    /// Where it last was scattered.
+    pub from: Vec3,
+    /// Unit normal there, on the side that light comes to; zero where it may come from everywhere.
+    pub normal: Vec3,
+    /// Density per steradian with which its direction was chosen; infinite after the camera, a mirror or clear glass,
+    /// from where no light would have been asked.
+    pub pdf: f32,
+    /// Squared ratio of the indices of refraction behind and before: what radiance loses on its way into denser things
+    /// and gains on its way out, which roulette must not count.
+    pub ior_scale: f32,
+    /// The solids that it is in.
+    pub inside: Interiors,
+    /// How often it went through holes since it was scattered.
+    pub passed: u16,
+    /// How often it was scattered so far, by kind.
+    pub scattered: Counts,
+}
+
+/// How often a path was scattered, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// By matte surfaces.
+    pub diffuse: u16,
+    /// By rough mirrors and rough glass.
+    pub glossy: u16,
+    /// By mirrors and clear glass.
+    pub specular: u16,
+    /// By media.
+    pub volume: u16,
+}
+
+impl Trail {
+    /// Of a ray from the camera.
+    pub const CAMERA: Self = Self {
+        from: Vec3::ZERO,
+        normal: Vec3::ZERO,
+        pdf: f32::INFINITY,
+        ior_scale: 1.0,
+        inside: Interiors::NONE,
+        passed: 0,
+        scattered: Counts { diffuse: 0, glossy: 0, specular: 0, volume: 0 },
+    };
+
+    /// As what light comes to.
+    #[inline]
+    pub fn receiver(&self, time: f32) -> Receiver {
+        Receiver { point: self.from, normal: self.normal, time }
+    }
+
+    /// The weight of light that this path has met, when `light` is the density with which it would have been asked.
+    #[inline]
+    pub fn weight(&self, light: impl FnOnce() -> f32) -> f32 {
+        if self.pdf == f32::INFINITY { 1.0 } else { power_heuristic(self.pdf, light()) }
+    }
+}
+
+/// The weight of a sample of density `own` that might have been had with density `other` too (Veach 1997, section
+/// 9.2.2, exponent 2).
+#[inline]
+pub fn power_heuristic(own: f32, other: f32) -> f32 {
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}

@@ -1,0 +1,243 @@
+//! Metals.
+//!
+//! ```json
+//! {"conductor": {"metal": "gold", "roughness": 0.3}}
+//! ```
+//!
+//! Or by measured numbers, `eta` and `k`, or by colours, `reflectance` (head on) and `edge_tint`.
+
+use super::error::in_range;
+use super::input::{check_number, check_share, fraction, share};
+use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use crate::bsdf::metals::Metal;
+use crate::bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
+use crate::texture::{Input, Lookup, Slot, TextureTable};
+use juggler_math::{Rgb, Vec2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A metal, polished or rough, the same from both sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Conductor {
+    /// A metal by name, whose measured indices are used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub metal: Option<MetalName>,
+    /// Index of refraction per channel, together with `k`, in place of a name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub eta: Option<Rgb>,
+    /// Coefficient of extinction per channel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<Rgb>,
+    /// Colour of a mirror seen head on, where neither a name nor indices are given.
+    pub reflectance: Input<Rgb>,
+    /// Colour that it takes on at 82 degrees, on its way to white at grazing angles: relative to the one that it would
+    /// have there by itself.
+    pub edge_tint: Input<Rgb>,
+    /// Colour at grazing angles in place of white; the same as `reflectance` for a mirror that is the same all round.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grazing: Option<Rgb>,
+    /// 0 for a mirror, 1 for the roughest; the width of GGX is its square.
+    pub roughness: Input<f32>,
+    /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
+    pub anisotropy: Input<f32>,
+    /// Gives back what light loses between the grooves of a rough surface: white metal stays white. Off, as most
+    /// renderers have it, rough metal is darker.
+    pub energy_compensation: bool,
+}
+
+/// A metal whose indices have been measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "their names say it")]
+pub enum MetalName {
+    Aluminium,
+    Brass,
+    Chromium,
+    Cobalt,
+    Copper,
+    Gold,
+    Iron,
+    Nickel,
+    Platinum,
+    Silver,
+    Titanium,
+    Tungsten,
+    Zinc,
+}
+
+impl Default for Conductor {
+    fn default() -> Self {
+        Self {
+            metal: None,
+            eta: None,
+            k: None,
+            reflectance: Rgb::splat(0.9).into(),
+            edge_tint: Rgb::WHITE.into(),
+            grazing: None,
+            roughness: 0.0.into(),
+            anisotropy: 0.0.into(),
+            energy_compensation: true,
+        }
+    }
+}
+
+/// A [`Conductor`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledConductor {
+    color: Color,
+    roughness: Slot<f32>,
+    anisotropy: Slot<f32>,
+    compensated: bool,
+    /// What holds everywhere, where nothing is a texture.
+    fixed: Option<ConductorLobe>,
+}
+
+#[derive(Clone, Debug)]
+enum Color {
+    Measured(Fresnel),
+    Tinted(Slot<Rgb>, Slot<Rgb>),
+    Schlick(Slot<Rgb>, Rgb),
+}
+
+impl Material for Conductor {
+    fn kind(&self) -> &'static str {
+        "conductor"
+    }
+
+    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+        check_share("reflectance", &self.reflectance)?;
+        check_share("edge_tint", &self.edge_tint)?;
+        check_share("grazing", &self.grazing.unwrap_or_default().into())?;
+        check_number("roughness", &self.roughness, 0.0, 1.0)?;
+        check_number("anisotropy", &self.anisotropy, -1.0, 1.0)?;
+        let textures = resolver.textures();
+        let mut compiled = CompiledConductor {
+            color: self.color(textures)?,
+            roughness: textures.resolve("roughness", &self.roughness)?,
+            anisotropy: textures.resolve("anisotropy", &self.anisotropy)?,
+            compensated: self.energy_compensation,
+            fixed: None,
+        };
+        if !compiled.is_textured() {
+            compiled.fixed = Some(compiled.at(textures, &Lookup::default()));
+        }
+        Ok(Physical::Conductor(compiled).into())
+    }
+}
+
+impl Conductor {
+    fn color(&self, textures: &TextureTable) -> Result<Color, MaterialError> {
+        if let Some(metal) = self.metal {
+            return Ok(Color::Measured(metal.fresnel()));
+        }
+        match (self.eta, self.k) {
+            (Some(eta), Some(k)) => {
+                eta.to_array().iter().try_for_each(|v| in_range("eta", *v, 1e-3, 1e3))?;
+                k.to_array().iter().try_for_each(|v| in_range("k", *v, 0.0, 1e3))?;
+                Ok(Color::Measured(Fresnel::Complex { eta, k }))
+            }
+            (None, None) => {
+                let head_on = textures.resolve("reflectance", &self.reflectance)?;
+                Ok(match self.grazing {
+                    Some(grazing) => Color::Schlick(head_on, grazing),
+                    None => Color::Tinted(head_on, textures.resolve("edge_tint", &self.edge_tint)?),
+                })
+            }
+            (eta, _) => {
+                let field = if eta.is_some() { "k" } else { "eta" };
+                Err(MaterialError::Invalid { field, message: "`eta` and `k` belong together".into() })
+            }
+        }
+    }
+}
+
+impl CompiledConductor {
+    /// How it scatters at a point.
+    #[inline]
+    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+        match self.fixed {
+            Some(fixed) => fixed.into(),
+            None => self.at(textures, &view.lookup()).into(),
+        }
+    }
+
+    fn at(&self, textures: &TextureTable, at: &Lookup) -> ConductorLobe {
+        let fresnel = match &self.color {
+            Color::Measured(fresnel) => *fresnel,
+            Color::Tinted(head_on, edge) => Fresnel::tinted(share(textures, head_on, at), share(textures, edge, at)),
+            Color::Schlick(head_on, f90) => Fresnel::Schlick { f0: share(textures, head_on, at), f90: *f90 },
+        };
+        let roughness = fraction(textures, &self.roughness, at);
+        let anisotropy = match &self.anisotropy {
+            Slot::Value(value) => *value,
+            slot => textures.number(slot, at).clamp(-1.0, 1.0),
+        };
+        let alpha = stretched(roughness, anisotropy);
+        if self.compensated { ConductorLobe::compensated(fresnel, alpha) } else { ConductorLobe::new(fresnel, alpha) }
+    }
+
+    /// Whether it differs from place to place.
+    pub fn is_textured(&self) -> bool {
+        let colors = match &self.color {
+            Color::Measured(_) => false,
+            Color::Tinted(head_on, edge) => head_on.is_texture() || edge.is_texture(),
+            Color::Schlick(head_on, _) => head_on.is_texture(),
+        };
+        colors || self.roughness.is_texture() || self.anisotropy.is_texture()
+    }
+}
+
+/// Widths of GGX along u and v (Burley, Physically Based Shading at Disney, 2012, section 5.4, with the sign to
+/// tell along from across).
+pub(super) fn stretched(roughness: f32, anisotropy: f32) -> Vec2 {
+    let alpha = roughness * roughness;
+    if anisotropy == 0.0 {
+        return Vec2::splat(alpha);
+    }
+    let aspect = (1.0 - 0.9 * anisotropy.abs()).sqrt();
+    let (long, short) = ((alpha / aspect).min(1.0), alpha * aspect);
+    if anisotropy > 0.0 { Vec2::new(long, short) } else { Vec2::new(short, long) }
+}
+
+impl MetalName {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Aluminium => "aluminium",
+            Self::Brass => "brass",
+            Self::Chromium => "chromium",
+            Self::Cobalt => "cobalt",
+            Self::Copper => "copper",
+            Self::Gold => "gold",
+            Self::Iron => "iron",
+            Self::Nickel => "nickel",
+            Self::Platinum => "platinum",
+            Self::Silver => "silver",
+            Self::Titanium => "titanium",
+            Self::Tungsten => "tungsten",
+            Self::Zinc => "zinc",
+        }
+    }
+
+    /// As measured.
+    fn fresnel(self) -> Fresnel {
+        Metal::named(self.name()).map_or(Fresnel::WHITE, Metal::fresnel)
+    }
+}
+
+#[cfg(test)]
+impl Conductor {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let gold = Self { metal: Some(MetalName::Gold), roughness: 0.4.into(), ..Self::default() };
+        let indices = Self {
+            eta: Some(Rgb::splat(0.2)),
+            k: Some(Rgb::splat(3.0)),
+            energy_compensation: false,
+            roughness: 0.3.into(),
+            ..Self::default()
+        };
+        let brushed = Self { anisotropy: 0.8.into(), roughness: Input::Texture("tiles".into()), ..Self::default() };
+        vec![Self::default(), gold, indices, brushed]
+    }
+}

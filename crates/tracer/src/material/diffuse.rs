@@ -1,0 +1,77 @@
+//! A matte surface.
+//!
+//! ```json
+//! {"diffuse": {"reflectance": [0.8, 0.2, 0.1], "roughness": 0}}
+//! ```
+
+use super::input::{check_number, check_share, fraction, share};
+use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use crate::bsdf::{Bsdf, Lambert};
+use crate::texture::{Input, Slot, TextureTable};
+use juggler_math::Rgb;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A matte surface, the same from both sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Diffuse {
+    /// Share of light that it gives back, per channel, 0 to 1.
+    pub reflectance: Input<Rgb>,
+    /// 0 for Lambert's law, up to 1 for dust and plaster, which look flatter (Oren-Nayar, energy-preserving).
+    pub roughness: Input<f32>,
+}
+
+impl Default for Diffuse {
+    fn default() -> Self {
+        Self { reflectance: Rgb::splat(0.8).into(), roughness: 0.0.into() }
+    }
+}
+
+/// A [`Diffuse`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledDiffuse {
+    reflectance: Slot<Rgb>,
+    roughness: Slot<f32>,
+}
+
+impl Material for Diffuse {
+    fn kind(&self) -> &'static str {
+        "diffuse"
+    }
+
+    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+        check_share("reflectance", &self.reflectance)?;
+        check_number("roughness", &self.roughness, 0.0, 1.0)?;
+        let textures = resolver.textures();
+        let reflectance = textures.resolve("reflectance", &self.reflectance)?;
+        let roughness = textures.resolve("roughness", &self.roughness)?;
+        Ok(Physical::Diffuse(CompiledDiffuse { reflectance, roughness }).into())
+    }
+}
+
+impl CompiledDiffuse {
+    /// How it scatters at a point.
+    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+        if let (Slot::Value(albedo), Slot::Value(0.0)) = (self.reflectance, self.roughness) {
+            return Lambert { albedo }.into();
+        }
+        let at = view.lookup();
+        let _roughness = fraction(textures, &self.roughness, &at);
+        Lambert { albedo: share(textures, &self.reflectance, &at) }.into()
+    }
+
+    /// Whether it differs from place to place.
+    pub fn is_textured(&self) -> bool {
+        self.reflectance.is_texture() || self.roughness.is_texture()
+    }
+}
+
+#[cfg(test)]
+impl Diffuse {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let rough = Self { roughness: 0.7.into(), reflectance: Input::Texture("tiles".into()) };
+        vec![Self::default(), rough]
+    }
+}

@@ -1,0 +1,86 @@
+//! What a material is at one point, seen from one side: light given off, what it lets by, how it scatters.
+
+use super::lookup;
+use crate::bsdf::{Bsdf, fresnel};
+use crate::surface::Surface;
+use crate::texture::Lookup;
+use juggler_math::{Frame, Rgb, Vec3};
+
+/// Least sine above the surface at which shading normals may mirror: below it a mirror would look into the ground.
+const LEAST_RISE: f32 = 0.01;
+
+/// A point as it is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The surface, world space, normals as the shape gives them.
+    pub surface: &'a Surface,
+    /// Unit, towards the viewer, world space.
+    pub wo: Vec3,
+    /// Index of refraction around the object, whatever the side that is looked at.
+    pub around_ior: f32,
+    /// A number in [0, 1) for materials that are one thing or another by chance.
+    pub pick: f32,
+}
+
+impl<'a> View<'a> {
+    /// A point as it is looked at from straight above.
+    pub fn of(surface: &'a Surface) -> Self {
+        View { surface, wo: surface.normal, around_ior: 1.0, pick: 0.5 }
+    }
+
+    /// Whether it is looked at from the side to which the true normal points.
+    pub fn is_outside(&self) -> bool {
+        self.surface.normal.dot(self.wo) >= 0.0
+    }
+
+    /// Where textures are asked.
+    pub(super) fn lookup(&self) -> Lookup {
+        lookup(self.surface)
+    }
+}
+
+/// A material at one point.
+#[derive(Clone, Debug)]
+pub struct Shade {
+    /// Radiance that it gives off towards the viewer.
+    pub emission: Rgb,
+    /// Share of light that meets it; the rest goes straight on as if nothing were there. 0 to 1.
+    pub opacity: f32,
+    /// Frame of the scattering function. Its z is the shading normal: on the viewer's side of an opaque thing, on the
+    /// outside of one that light goes through.
+    pub frame: Frame,
+    /// How light is scattered.
+    pub bsdf: Bsdf,
+    /// Whether light may come through, so that the frame stands on the outside, whoever looks.
+    pub transmissive: bool,
+    /// Factor on what the scene's lights bring (not shapes that glow): π for the classic material, whose lights always
+    /// were so measured that one of radiance 1 makes a white surface white.
+    pub lamp_scale: f32,
+}
+
+impl Shade {
+    /// Takes all light and gives none back.
+    pub fn black(normal: Vec3) -> Self {
+        let (emission, frame) = (Rgb::BLACK, Frame::around(normal));
+        Self { emission, opacity: 1.0, frame, bsdf: Bsdf::new(), transmissive: false, lamp_scale: 1.0 }
+    }
+}
+
+/// The shading normal `normal` on the viewer's side, bent so far towards the true one that a mirror there shows
+/// something above the surface (Keller et al., The Iray Light Transport Simulation and Rendering System, 2017,
+/// appendix A.3): no black edges where the two differ much.
+pub fn facing_normal(view: &View, normal: Vec3) -> Vec3 {
+    let turned = if view.is_outside() { 1.0 } else { -1.0 };
+    let (truth, normal) = (view.surface.normal * turned, normal * turned);
+    if truth == normal {
+        return normal;
+    }
+    let mirrored = fresnel::reflect(view.wo, normal);
+    let least = LEAST_RISE.min(0.9 * truth.dot(view.wo));
+    let rise = mirrored.dot(truth);
+    if rise >= least && normal.dot(view.wo) > 0.0 {
+        return normal;
+    }
+    let along = (mirrored - truth * rise).normalize_or_zero() * (1.0 - least * least).sqrt();
+    (along + truth * least + view.wo).normalize_or(truth)
+}

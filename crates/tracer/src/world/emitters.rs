@@ -1,0 +1,186 @@
+//! All that gives off light, as the path tracer asks for it: one of many, by how much it may bring.
+
+use super::areas::{Areas, NOWHERE};
+use super::glowing::Glowing;
+use super::{Lamp, Vertex, World};
+use crate::emitter::{AreaEmitter, LightBounds, LightTree};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
+
+/// Everything that gives off light.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Emitters {
+    /// Over `finite`, in order.
+    tree: LightTree,
+    finite: Vec<Emitter>,
+    /// Numbers of the lamps that have no place.
+    far: Vec<u32>,
+    /// The shapes that shine, by number.
+    shapes: Vec<Shining>,
+}
+
+/// A shape that shines, and where it stands among the emitters.
+#[derive(Clone, Debug)]
+struct Shining {
+    shape: Glowing,
+    /// Its first emitter.
+    first: u32,
+    /// Of each of its parts which of its emitters it belongs to; nothing where there is only one.
+    parts: Vec<u32>,
+}
+
+/// Something with a place that gives off light.
+#[derive(Clone, Debug)]
+enum Emitter {
+    /// A light of the scene, by number.
+    Lamp(u32),
+    /// A surface of the shape at that place.
+    Area(Box<AreaEmitter>, u32),
+    /// The shape at that place as a whole.
+    Shape(u32),
+}
+
+/// Light from one place of an emitter that was picked.
+#[derive(Clone, Copy, Debug)]
+pub struct Lighting {
+    /// Unit, towards it.
+    pub wi: Vec3,
+    /// How far it is; infinite for one without a place.
+    pub distance: f32,
+    /// Radiance that comes from there if nothing is in the way; of lights without a size, what arrives.
+    pub radiance: Rgb,
+    /// Density per steradian of having picked this place; the chance of having picked the light where it has no size.
+    pub pdf: f32,
+    /// Whether a ray may meet it by chance.
+    pub can_be_met: bool,
+    /// Whether it is a light of the scene, not a shape that shines.
+    pub is_lamp: bool,
+}
+
+/// A place that light comes to.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// The place.
+    pub point: Vec3,
+    /// Unit normal on the side that light comes to; zero where it may come from everywhere.
+    pub normal: Vec3,
+    /// When.
+    pub time: f32,
+}
+
+impl Emitters {
+    pub fn new(lamps: &[Lamp], mut glowing: Vec<Glowing>) -> Self {
+        let mut emitters = Self::default();
+        let mut bounds: Vec<LightBounds> = Vec::new();
+        for (number, lamp) in (0..).zip(lamps) {
+            match lamp.bounds() {
+                Some(of_lamp) => {
+                    emitters.finite.push(Emitter::Lamp(number));
+                    bounds.push(of_lamp);
+                }
+                None => emitters.far.push(number),
+            }
+        }
+        glowing.sort_by_key(|shape| shape.number);
+        for shape in glowing {
+            emitters.add(shape, &mut bounds);
+        }
+        emitters.tree = LightTree::build(&bounds);
+        emitters
+    }
+
+    fn add(&mut self, shape: Glowing, bounds: &mut Vec<LightBounds>) {
+        let (first, place) = (self.finite.len() as u32, self.shapes.len() as u32);
+        let areas = shape.still().and_then(|transform| Areas::of(shape.shape(), transform));
+        let parts = if let Some(Areas { surfaces, parts }) = areas {
+            for surface in surfaces {
+                bounds.push(surface.light_bounds(shape.power(surface.area()), shape.is_two_sided()));
+                self.finite.push(Emitter::Area(Box::new(surface), place));
+            }
+            parts
+        } else {
+            bounds.push(shape.bounds());
+            self.finite.push(Emitter::Shape(place));
+            Vec::new()
+        };
+        self.shapes.push(Shining { shape, first, parts });
+    }
+
+    /// The chance of one without a place, of which each is as likely as all that have one.
+    fn far_chance(&self) -> f32 {
+        let near = usize::from(!self.finite.is_empty());
+        if self.far.is_empty() { 0.0 } else { 1.0 / (self.far.len() + near) as f32 }
+    }
+
+    fn near_chance(&self) -> f32 {
+        1.0 - self.far_chance() * self.far.len() as f32
+    }
+
+    /// Density with which [`World::sample_light`] picks the place of a shape that a ray met.
+    fn pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> Option<f32> {
+        let at = self.shapes.binary_search_by_key(&vertex.object, |shining| shining.shape.number).ok()?;
+        let shining = self.shapes.get(at)?;
+        let part = shining.parts.get(vertex.part as usize).copied().unwrap_or(0);
+        if part == NOWHERE {
+            return None;
+        }
+        let index = shining.first + part;
+        let chance = self.tree.probability(from.point, from.normal, index) * self.near_chance();
+        let pdf = || match self.finite.get(index as usize) {
+            Some(Emitter::Area(area, _)) => area.pdf(from.point, vertex.surface.point),
+            Some(Emitter::Shape(_)) => shining.shape.pdf(from, ray, vertex),
+            _ => 0.0,
+        };
+        (chance > 0.0).then(|| chance * pdf())
+    }
+}
+
+impl World {
+    /// Light that may come to a place from one of all that give light, chosen by `u`.
+    pub fn sample_light(&self, to: &Receiver, u: Vec2) -> Option<Lighting> {
+        let emitters = &self.emitters;
+        let far = emitters.far_chance() * emitters.far.len() as f32;
+        if u.x < far {
+            let place = (u.x / emitters.far_chance()).min(emitters.far.len() as f32 - 0.5);
+            let rest = Vec2::new((place - place.floor()).min(1f32.next_down()), u.y);
+            let number = *emitters.far.get(place as usize)?;
+            return self.lamp_light(number, to, rest, emitters.far_chance());
+        }
+        let near = emitters.near_chance();
+        let pick = emitters.tree.sample(to.point, to.normal, ((u.x - far) / near).min(1f32.next_down()))?;
+        let (chance, rest) = (pick.probability * near, Vec2::new(pick.rest, u.y));
+        match emitters.finite.get(pick.index as usize)? {
+            Emitter::Lamp(number) => self.lamp_light(*number, to, rest, chance),
+            Emitter::Area(area, shape) => {
+                let sample = area.sample(to.point, rest)?;
+                let shape = &emitters.shapes.get(*shape as usize)?.shape;
+                let radiance = shape.radiance(&self.materials, to, sample.wi, sample.normal)?;
+                Some(met(sample.wi, sample.distance, radiance, sample.pdf * chance))
+            }
+            Emitter::Shape(shape) => {
+                emitters.shapes.get(*shape as usize)?.shape.sample(&self.materials, to, rest, chance)
+            }
+        }
+    }
+
+    fn lamp_light(&self, number: u32, to: &Receiver, u: Vec2, chance: f32) -> Option<Lighting> {
+        let sample = self.lamps.get(number as usize)?.at(to.time).light.sample(to.point, u)?;
+        Some(Lighting {
+            wi: sample.wi,
+            distance: sample.distance,
+            radiance: sample.radiance,
+            pdf: sample.pdf * chance,
+            can_be_met: false,
+            is_lamp: true,
+        })
+    }
+
+    /// Density per steradian with which [`World::sample_light`] picks, for the place `from`, where `ray` met `vertex`.
+    pub fn light_pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> f32 {
+        self.emitters.pdf(from, ray, vertex).unwrap_or(0.0)
+    }
+}
+
+/// Light from a surface, which rays meet by chance too.
+pub(super) fn met(wi: Vec3, distance: f32, radiance: Rgb, pdf: f32) -> Lighting {
+    Lighting { wi, distance, radiance, pdf, can_be_met: true, is_lamp: false }
+}

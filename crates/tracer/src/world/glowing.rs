@@ -1,0 +1,155 @@
+//! Shapes that shine, in the world's space.
+
+use super::emitters::{Lighting, Receiver, met};
+use super::{Content, Level, Vertex};
+use crate::emitter::LightBounds;
+use crate::material::{Glow, MaterialId, MaterialTable, Sides, View};
+use crate::shape::AnyShape;
+use juggler_math::{Motion, Ray, Rgb, Transform, Vec2, Vec3};
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+/// A shape that shines.
+#[derive(Clone, Debug)]
+pub struct Glowing {
+    /// Number of the shape.
+    pub number: u32,
+    shape: Arc<AnyShape>,
+    motion: Motion,
+    material: MaterialId,
+    glow: Glow,
+}
+
+impl Glowing {
+    /// All shapes of the world's own level, and of those below, that shine.
+    pub fn all(top: &Level, materials: &MaterialTable) -> Vec<Self> {
+        let mut found = Vec::new();
+        collect(top, materials, &Place { motion: Transform::IDENTITY.into(), first: 0, inherited: None }, &mut found);
+        found
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> &AnyShape {
+        &self.shape
+    }
+
+    /// Where it is, if it stays there.
+    pub fn still(&self) -> Option<&Transform> {
+        match &self.motion {
+            Motion::Still(transform) => Some(transform),
+            Motion::Moving(_) => None,
+        }
+    }
+
+    /// Whether it shines to both sides.
+    pub fn is_two_sided(&self) -> bool {
+        self.glow.sides == Sides::Both
+    }
+
+    /// What a part of it gives off in all, by its area; of a textured one as if it were white.
+    pub fn power(&self, area: f32) -> f32 {
+        let light = self.glow.radiance.unwrap_or(Rgb::WHITE).luminance();
+        PI * area * light * if self.is_two_sided() { 2.0 } else { 1.0 }
+    }
+
+    /// What the light tree needs to know of it as a whole.
+    pub fn bounds(&self) -> LightBounds {
+        let stretch = self.motion.at(0.0).max_stretch();
+        let power = self.power(self.shape.area() * stretch * stretch);
+        // Whatever its form: normals may stand everywhere.
+        let bounds = self.motion.aabb(&self.shape.bounds());
+        let two_sided = self.is_two_sided();
+        LightBounds { bounds, axis: Vec3::Z, cos_theta_o: -1.0, cos_theta_e: 0.0, power, two_sided }
+    }
+
+    /// Light from one place of it; `chance` is that of having picked it.
+    pub fn sample(&self, materials: &MaterialTable, to: &Receiver, u: Vec2, chance: f32) -> Option<Lighting> {
+        let transform = self.motion.at(to.time);
+        let sample = self.shape.sample(transform.point_to_local(to.point), u)?;
+        let way = transform.point(sample.point) - to.point;
+        let distance = way.length();
+        let wi = way / distance;
+        let pdf = sample.pdf * density(&transform, to.point, sample.point, sample.normal);
+        if !(distance > 0.0 && pdf > 0.0 && pdf < f32::INFINITY) {
+            return None;
+        }
+        let radiance = self.radiance(materials, to, wi, transform.normal(sample.normal))?;
+        Some(met(wi, distance, radiance, pdf * chance))
+    }
+
+    /// Radiance that comes from a place in the direction `wi`, whose outward normal is `normal`; `None` where nothing
+    /// does.
+    pub fn radiance(&self, materials: &MaterialTable, to: &Receiver, wi: Vec3, normal: Vec3) -> Option<Rgb> {
+        if let Some(radiance) = self.glow.radiance {
+            return (self.is_two_sided() || normal.dot(wi) < 0.0).then_some(radiance);
+        }
+        let transform = &self.motion.at(to.time);
+        let ray = transform.ray_to_local(&Ray { time: to.time, ..Ray::new(to.point, wi) });
+        let surface = self.shape.surface(&ray, &self.shape.intersect(&ray)?).to_world(transform);
+        let view = View { wo: -wi, ..View::of(&surface) };
+        Some(materials.shade(self.material, &view).emission).filter(|light| !light.is_black())
+    }
+
+    /// Density per steradian with which [`Glowing::sample`] picks the place where `ray` met this shape.
+    pub fn pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> f32 {
+        let transform = self.motion.at(from.time);
+        let local = transform.ray_to_local(&Ray { time: from.time, ..Ray::new(from.point, ray.direction) });
+        let normal = (transform.matrix().transpose() * vertex.surface.normal).normalize_or(Vec3::Y);
+        let point = transform.point_to_local(vertex.surface.point);
+        let length = local.direction.length();
+        let pdf = self.shape.pdf(local.origin, local.direction / length);
+        pdf * density(&transform, from.point, point, normal)
+    }
+}
+
+/// Solid angle in object space over that in the world, of a place seen from the world's point `from`: 1 where the
+/// transform keeps angles.
+fn density(transform: &Transform, from: Vec3, point: Vec3, normal: Vec3) -> f32 {
+    if transform.uniform_scale().is_some() {
+        return 1.0;
+    }
+    let local = point - transform.point_to_local(from);
+    let world = transform.point(point) - from;
+    let across = transform.matrix().determinant().abs() * (transform.inverse_matrix().transpose() * normal).length();
+    let angle = |way: Vec3, normal: Vec3| way.dot(normal).abs() / (way.length_squared() * way.length());
+    angle(local, normal) / (angle(world, transform.normal(normal)) * across)
+}
+
+/// Where a level stands, and what it is made of where nothing says.
+struct Place {
+    motion: Motion,
+    first: u32,
+    inherited: Option<MaterialId>,
+}
+
+fn collect(level: &Level, materials: &MaterialTable, place: &Place, found: &mut Vec<Glowing>) {
+    for (number, placed) in (0..).zip(&level.objects) {
+        let number = place.first + level.first(number);
+        let material = placed.material.or(place.inherited);
+        match &placed.content {
+            Content::Shape(shape) => {
+                let glow = material.and_then(|material| Some((material, materials.glow(material)?)));
+                if let Some((material, glow)) = glow.filter(|_| shape.area().is_finite()) {
+                    let motion = placed.motion.then(&place.motion);
+                    found.push(Glowing { number, shape: Arc::clone(shape), motion, material, glow });
+                }
+            }
+            Content::Level(below) if glows(below, materials, material) => {
+                let motion = placed.motion.then(&place.motion);
+                collect(below, materials, &Place { motion, first: number, inherited: material }, found);
+            }
+            Content::Level(_) => {}
+        }
+    }
+}
+
+/// Whether anything in a level shines.
+fn glows(level: &Level, materials: &MaterialTable, inherited: Option<MaterialId>) -> bool {
+    level.objects.iter().any(|placed| {
+        let material = placed.material.or(inherited);
+        match &placed.content {
+            Content::Shape(_) => material.is_some_and(|material| materials.glow(material).is_some()),
+            Content::Level(below) => glows(below, materials, material),
+        }
+    })
+}
