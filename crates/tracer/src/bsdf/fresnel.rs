@@ -4,7 +4,7 @@
 //! refraction on the side of `wo` over the one behind the surface; [`dielectric`] takes its inverse, the
 //! index behind relative to the one in front (Pharr, Jakob, Humphreys, PBR 4th ed., section 9.3).
 
-use juggler_math::Vec3;
+use juggler_math::{Rgb, Vec3, fun};
 
 /// The direction in which light from `wo` is mirrored.
 #[inline]
@@ -45,10 +45,136 @@ pub fn dielectric(cos: f32, relative_ior: f32) -> f32 {
     (parallel * parallel + perpendicular * perpendicular) * 0.5
 }
 
+/// The mean of [`dielectric`] over all directions, each weighted by its cosine: what is mirrored of even light (Walsh
+/// 1926; Egan and Hilgeman 1973), to 1e-4.
+pub fn dielectric_average(relative_ior: f32) -> f32 {
+    let n = f64::from(relative_ior);
+    if n < 1.0 {
+        // What is even within goes both ways through the border alike, but for the size of the cones.
+        return (1.0 - (1.0 - dielectric_average(1.0 / relative_ior)) * relative_ior * relative_ior).clamp(0.0, 1.0);
+    }
+    if n < 1.02 {
+        // The formula cancels itself out; near 1 the mean is that of its slope.
+        return ((n - 1.0) * 0.305) as f32;
+    }
+    let (n2, n4) = (n * n, n * n * n * n);
+    let logarithm = fun::ln_f64((n - 1.0) / (n + 1.0));
+    let mean = 0.5
+        + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
+        + n2 * (n2 - 1.0) * (n2 - 1.0) / ((n2 + 1.0) * (n2 + 1.0) * (n2 + 1.0)) * logarithm
+        - 2.0 * n * n2 * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0))
+        + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0) * (n4 - 1.0)) * fun::ln_f64(n);
+    mean.clamp(0.0, 1.0) as f32
+}
+
+/// The share of unpolarised light that a conductor mirrors (Born and Wolf, Principles of Optics, section 14.2), for
+/// light at an angle of cosine `cos`, 0 to 1; `eta` and `k` are real and imaginary part of its index of refraction
+/// over that of the (clear) medium in front.
+#[inline]
+pub fn conductor(cos: f32, eta: f32, k: f32) -> f32 {
+    let cos = cos.clamp(0.0, 1.0);
+    let (cos2, sin2) = (cos * cos, 1.0 - cos * cos);
+    let difference = eta * eta - k * k - sin2;
+    // a² + b² and a of the complex cosine behind the surface, times its index: a + ib.
+    let norm = (difference * difference + 4.0 * eta * eta * k * k).sqrt();
+    let real = (0.5 * (norm + difference)).max(0.0).sqrt();
+    let (sum, cross) = (norm + cos2, 2.0 * cos * real);
+    let perpendicular = (sum - cross) / (sum + cross).max(f32::MIN_POSITIVE);
+    let (sum, cross) = (cos2 * norm + sin2 * sin2, cross * sin2);
+    let parallel = perpendicular * (sum - cross) / (sum + cross).max(f32::MIN_POSITIVE);
+    0.5 * (perpendicular + parallel)
+}
+
+/// Schlick's approximation (1994) at `cos`, 0 to 1: `f0` head on, `f90` at a grazing angle.
+#[inline]
+pub fn schlick(cos: f32, f0: Rgb, f90: Rgb) -> Rgb {
+    let m = (1.0 - cos).clamp(0.0, 1.0);
+    let m2 = m * m;
+    f0 + (f90 - f0) * (m2 * m2 * m)
+}
+
+/// Share of light head on at a border of that relative index of refraction.
+#[inline]
+pub fn head_on(relative_ior: f32) -> f32 {
+    let r = (relative_ior - 1.0) / (relative_ior + 1.0);
+    r * r
+}
+
+/// How a metal, or what is treated like one, mirrors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fresnel {
+    /// By its complex index of refraction: exact for unpolarised light.
+    Complex {
+        /// Real part of the index, per channel.
+        eta: Rgb,
+        /// Extinction, per channel.
+        k: Rgb,
+    },
+    /// By colours: Schlick's curve, bent so that it is `edge` times as high at an angle of cosine 1/7, some 82
+    /// degrees (Kutz, Hašan and Edmondson 2021; Hoffman 2023: "F82 tint").
+    Tinted {
+        /// Colour head on, 0 to 1.
+        f0: Rgb,
+        /// `17.65 (f0 + (1 - f0) (6/7)⁵) (1 - edge)`: black for plain Schlick. See [`Fresnel::tinted`].
+        bend: Rgb,
+    },
+    /// Schlick's curve to any colour at grazing angles.
+    Schlick {
+        /// Colour head on, 0 to 1.
+        f0: Rgb,
+        /// Colour at a grazing angle, 0 to 1.
+        f90: Rgb,
+    },
+}
+
+impl Fresnel {
+    /// Mirrors everything.
+    pub const WHITE: Self = Self::Tinted { f0: Rgb::WHITE, bend: Rgb::BLACK };
+
+    /// By the colour `f0` head on and the factor `edge` on Schlick's curve at 82 degrees, both 0 to 1.
+    pub fn tinted(f0: Rgb, edge: Rgb) -> Self {
+        // (6/7)⁵ and 7 (7/6)⁶: Schlick's curve there, and over what the bend's own curve is there.
+        let there = f0 + (Rgb::WHITE - f0) * 0.462_664_4;
+        Self::Tinted { f0, bend: there * (Rgb::WHITE - edge) * 17.651_278 }
+    }
+
+    /// The share that is mirrored at an angle of cosine `cos`, 0 to 1.
+    #[inline]
+    pub fn at(&self, cos: f32) -> Rgb {
+        match self {
+            Self::Complex { eta, k } => {
+                Rgb::new(conductor(cos, eta.r, k.r), conductor(cos, eta.g, k.g), conductor(cos, eta.b, k.b))
+            }
+            Self::Tinted { f0, bend } => {
+                let m = (1.0 - cos).clamp(0.0, 1.0);
+                let m5 = m * m * m * m * m;
+                let curve = *f0 + (Rgb::WHITE - *f0) * m5 - *bend * (cos * m5 * m);
+                curve.map(|share| share.clamp(0.0, 1.0))
+            }
+            Self::Schlick { f0, f90 } => schlick(cos, *f0, *f90),
+        }
+    }
+
+    /// The mean over all directions, each weighted by its cosine: what is mirrored of even light. Exact for colours;
+    /// an index of refraction is taken by the colours that fit it best, within 0.01.
+    pub fn average(&self) -> Rgb {
+        match self {
+            Self::Complex { .. } => {
+                let f0 = self.at(1.0);
+                let there = f0 + (Rgb::WHITE - f0) * 0.462_664_4;
+                let at = self.at(1.0 / 7.0);
+                let bend = (there - at) * 17.651_278;
+                f0 + (Rgb::WHITE - f0) / 21.0 - bend / 126.0
+            }
+            Self::Tinted { f0, bend } => *f0 + (Rgb::WHITE - *f0) / 21.0 - *bend / 126.0,
+            Self::Schlick { f0, f90 } => *f0 + (*f90 - *f0) / 21.0,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_math::fun;
     use juggler_math::testing::{Random, close, close3};
 
     #[test]
@@ -129,6 +255,82 @@ mod tests {
             let (cos, ior) = (random.range(0.05, 1.0), random.range(1.01, 3.0));
             let cos_behind = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
             assert!(close(dielectric(cos, ior), dielectric(cos_behind, 1.0 / ior), 1e-4), "{cos} {ior}");
+        }
+    }
+
+    #[test]
+    fn a_conductor_without_extinction_is_a_dielectric() {
+        let mut random = Random::new(54);
+        for _ in 0..1000 {
+            let (cos, ior) = (random.range(0.0, 1.0), random.range(1.01, 3.0));
+            assert!(close(conductor(cos, ior, 0.0), dielectric(cos, ior), 1e-4), "{cos} {ior}");
+        }
+    }
+
+    #[test]
+    fn conductors_agree_with_closed_forms() {
+        // Head on: ((η - 1)² + k²) / ((η + 1)² + k²), everything at a grazing angle.
+        for (eta, k) in [(0.156f32, 3.602f32), (1.383, 1.915), (2.95, 2.932)] {
+            let expected = ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
+            assert!(close(conductor(1.0, eta, k), expected, 1e-6));
+            assert!(close(conductor(0.0, eta, k), 1.0, 1e-6));
+        }
+        for cos in [0.1f32, 0.3, 0.5, 0.8] {
+            let expected = by_complex_numbers(f64::from(cos), 0.2, 3.44) as f32;
+            assert!(close(conductor(cos, 0.2, 3.44), expected, 1e-5), "{cos}");
+        }
+    }
+
+    /// Fresnel's equations as they stand in textbooks, with complex numbers as pairs.
+    fn by_complex_numbers(cos: f64, eta: f64, k: f64) -> f64 {
+        type C = (f64, f64);
+        let mul = |a: C, b: C| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
+        let norm = |a: C| a.0 * a.0 + a.1 * a.1;
+        let n = (eta, k);
+        let n2 = mul(n, n);
+        // n cos θt = √(n² - sin² θ)
+        let inner = (n2.0 - (1.0 - cos * cos), n2.1);
+        let length = norm(inner).sqrt();
+        let root = (((length + inner.0) / 2.0).sqrt(), ((length - inner.0) / 2.0).sqrt());
+        let s = norm((cos - root.0, -root.1)) / norm((cos + root.0, root.1));
+        let n2cos = (n2.0 * cos, n2.1 * cos);
+        let p = norm((n2cos.0 - root.0, n2cos.1 - root.1)) / norm((n2cos.0 + root.0, n2cos.1 + root.1));
+        0.5 * (s + p)
+    }
+
+    #[test]
+    fn the_mean_at_a_border_is_that_of_its_curve() {
+        for ior in [0.4f32, 0.66, 0.75, 0.99, 1.0, 1.005, 1.02, 1.1, 1.33, 1.5, 2.4, 4.0] {
+            let steps = 20_000;
+            let at = |i| {
+                let cos = (f64::from(i) + 0.5) / f64::from(steps);
+                2.0 * cos * f64::from(dielectric(cos as f32, ior)) / f64::from(steps)
+            };
+            let (sum, mean) = ((0..steps).map(at).sum::<f64>() as f32, dielectric_average(ior));
+            assert!(close(mean, sum, 1e-3), "{ior}: {mean} {sum}");
+        }
+    }
+
+    #[test]
+    fn tinted_curves_pass_through_their_colours_and_averages_are_means() {
+        let (f0, edge) = (Rgb::new(0.9, 0.5, 0.2), Rgb::new(0.8, 1.0, 0.6));
+        let fresnel = Fresnel::tinted(f0, edge);
+        assert_eq!(fresnel.at(1.0), f0);
+        let plain = schlick(1.0 / 7.0, f0, Rgb::WHITE);
+        let at = fresnel.at(1.0 / 7.0);
+        assert!(close(at.r, plain.r * 0.8, 1e-5) && close(at.g, plain.g, 1e-5) && close(at.b, plain.b * 0.6, 1e-5));
+        let gold = Fresnel::Complex { eta: Rgb::new(0.156, 0.424, 1.383), k: Rgb::new(3.602, 2.472, 1.915) };
+        let glossy = Fresnel::Schlick { f0: Rgb::splat(0.04), f90: Rgb::splat(0.5) };
+        for (fresnel, tolerance) in [(fresnel, 1e-4), (gold, 0.01), (glossy, 1e-4), (Fresnel::WHITE, 1e-6)] {
+            let steps = 4000;
+            let sum = (0..steps).fold(Rgb::BLACK, |sum, i| {
+                let cos = (i as f32 + 0.5) / steps as f32;
+                sum + fresnel.at(cos) * (2.0 * cos)
+            });
+            let (mean, average) = (sum / steps as f32, fresnel.average());
+            for (a, b) in mean.to_array().into_iter().zip(average.to_array()) {
+                assert!(close(a, b, tolerance), "{fresnel:?}: {mean:?} {average:?}");
+            }
         }
     }
 }

@@ -1,0 +1,139 @@
+//! Metal, polished or rough: Torrance and Sparrow's mirrors (1967) with [GGX](super::ggx) normals.
+//!
+//! Single scattering loses what is mirrored more than once between microfacets; [`Conductor::compensated`] gives
+//! it back as one more lobe, f = m (1 - E(μo)) (1 - E(μi)) (Kulla and Conty 2017), which is reciprocal and makes a
+//! perfect mirror white at any roughness. Its colour m counts the absorption of every further bounce:
+//! F² Ē / (1 - F (1 - Ē)) / (π (1 - Ē)) with F Fresnel's mean and Ē that of E.
+
+use super::ggx::Ggx;
+use super::lobe::{Deltas, delta};
+use super::{BsdfSample, Fresnel, Scatter, choose, energy};
+use juggler_math::{Rgb, Vec2, Vec3};
+use std::f32::consts::FRAC_1_PI;
+
+/// A metal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conductor {
+    ggx: Ggx,
+    fresnel: Fresnel,
+    /// m, see above; black without compensation.
+    multiple: Rgb,
+}
+
+impl Conductor {
+    /// With single scattering only. `alpha` as in [`Ggx`]: the square of a material's roughness along x and y.
+    #[inline]
+    pub fn new(fresnel: Fresnel, alpha: Vec2) -> Self {
+        Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK }
+    }
+
+    /// With all scattering among its microfacets.
+    pub fn compensated(fresnel: Fresnel, alpha: Vec2) -> Self {
+        let mut conductor = Self::new(fresnel, alpha);
+        if !conductor.ggx.is_smooth() {
+            let lost = energy::mirror_loss_average(conductor.ggx.mean_alpha());
+            if lost > 0.0 {
+                let fold = |f: f32| f * f * (1.0 - lost) / (1.0 - f * lost) * (FRAC_1_PI / lost);
+                conductor.multiple = fresnel.average().map(fold);
+            }
+        }
+        conductor
+    }
+
+    /// Whether it is a perfect mirror's delta.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.ggx.is_smooth()
+    }
+
+    /// f |cos θi|, and the density per steradian.
+    #[inline]
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if wo.z <= 0.0 || wi.z <= 0.0 || self.is_smooth() {
+            return (Rgb::BLACK, 0.0);
+        }
+        let facing = self.ggx.mirror(wo, wi);
+        let single = self.fresnel.at(facing.cos) * facing.value;
+        if self.multiple.is_black() {
+            return (single, facing.pdf);
+        }
+        let lost = self.lost(wo);
+        self.with_multiple(lost, wi, single, facing.pdf)
+    }
+
+    /// Adds the lobe of what is scattered more than once.
+    fn with_multiple(&self, lost: f32, wi: Vec3, single: Rgb, pdf: f32) -> (Rgb, f32) {
+        let more = self.multiple * (lost * self.lost(wi) * wi.z);
+        (single + more, pdf * (1.0 - lost) + wi.z * FRAC_1_PI * lost)
+    }
+
+    /// 1 - E.
+    fn lost(&self, w: Vec3) -> f32 {
+        energy::mirror_loss(w.z, self.ggx.mean_alpha())
+    }
+
+    /// A direction by visible normals, or by cosine as often as single scattering loses light.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        if self.is_smooth() {
+            return Some(self.mirrored(wo));
+        }
+        if !self.multiple.is_black() {
+            return self.sample_compensated(wo, u);
+        }
+        let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
+        let weight = self.fresnel.at(facing.cos) * (facing.value / facing.pdf);
+        Some(BsdfSample { wi, weight, pdf: facing.pdf, scatter: Scatter::Glossy, ior: 1.0 })
+    }
+
+    fn sample_compensated(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        let lost = self.lost(wo);
+        let (is_multiple, x) = choose(u.x, lost);
+        let u = Vec2::new(x, u.y);
+        let (wi, facing, scatter) = if is_multiple {
+            let wi = juggler_math::warp::cosine_hemisphere(u);
+            if wi.z <= 0.0 {
+                return None;
+            }
+            (wi, self.ggx.mirror(wo, wi), Scatter::Diffuse)
+        } else {
+            let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
+            (wi, facing, Scatter::Glossy)
+        };
+        let single = self.fresnel.at(facing.cos) * facing.value;
+        let (value, pdf) = self.with_multiple(lost, wi, single, facing.pdf);
+        Some(BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
+    }
+
+    fn mirrored(&self, wo: Vec3) -> BsdfSample {
+        delta(Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel.at(wo.z), 1.0)
+    }
+
+    /// Fresnel's share where the surface itself would mirror, times what its roughness leaves.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        if wo.z <= 0.0 {
+            return Rgb::BLACK;
+        }
+        if self.is_smooth() {
+            return self.fresnel.at(wo.z);
+        }
+        let alpha = self.ggx.mean_alpha();
+        let lost = energy::mirror_loss(wo.z, alpha);
+        // Rough surfaces turn their facets to the viewer.
+        let single = self.fresnel.at(wo.z + (1.0 - wo.z) * 1.2 * alpha / (1.0 + alpha)) * (1.0 - lost);
+        let average = energy::mirror_loss_average(alpha);
+        single + self.multiple * (lost * average * std::f32::consts::PI)
+    }
+
+    /// The mirror's, if it is smooth.
+    pub fn deltas(&self, wo: Vec3) -> Deltas {
+        let mut deltas = Deltas::new();
+        if self.is_smooth() && wo.z > 0.0 {
+            deltas.push(self.mirrored(wo));
+        }
+        deltas
+    }
+}

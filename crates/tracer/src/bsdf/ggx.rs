@@ -1,0 +1,192 @@
+//! Tiny mirrors whose normals are distributed like those of a stretched sphere: GGX (Trowbridge and Reitz 1975;
+//! Walter, Marschner, Li and Torrance 2007), with Smith's height-correlated masking (Heitz 2014), sampled by visible
+//! normals through spherical caps (Dupuy and Benyoub 2023).
+//!
+//! `alpha` is the tangent of the typical slope along each axis. Materials offer a roughness instead, whose square
+//! it is (Burley 2012): lobes are given alpha, and who reads a material squares it.
+//!
+//! With s(w) = √(z² + αx² x² + αy² y²) Smith's functions need no tangents: G1(w) = 2z / (z + s(w)), and
+//! G2(o, i) = 2 zo zi / (zo s(i) + zi s(o)).
+
+use juggler_math::{Vec2, Vec3, fun};
+use std::f32::consts::PI;
+
+/// The distribution of microfacets' normals, all with z > 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    x: f32,
+    y: f32,
+}
+
+/// A pair of directions seen through the microfacets that mirror one into the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing {
+    /// Cosine between either direction and the microfacet's normal.
+    pub cos: f32,
+    /// D G2 / (4 zo): what is given back, times the cosine, were Fresnel's share 1.
+    pub value: f32,
+    /// Density per steradian.
+    pub pdf: f32,
+}
+
+impl Ggx {
+    /// Below this alpha (on both axes) a surface counts as smooth: a mirror's image is blurred by less than 0.1
+    /// degrees, and single precision could not tell the directions of the lobe apart.
+    pub const SMOOTH: f32 = 1e-3;
+
+    /// From alpha along x and y, taken into `SMOOTH..=1`.
+    #[inline]
+    pub fn new(alpha: Vec2) -> Self {
+        if alpha.x < Self::SMOOTH && alpha.y < Self::SMOOTH {
+            return Self { x: 0.0, y: 0.0 };
+        }
+        // NaN becomes the smallest.
+        let taken = |alpha: f32| if alpha > Self::SMOOTH { alpha.min(1.0) } else { Self::SMOOTH };
+        Self { x: taken(alpha.x), y: taken(alpha.y) }
+    }
+
+    /// The same alpha along both axes.
+    #[inline]
+    pub fn isotropic(alpha: f32) -> Self {
+        Self::new(Vec2::splat(alpha))
+    }
+
+    /// Whether all normals are z.
+    #[inline]
+    pub fn is_smooth(self) -> bool {
+        self.x == 0.0
+    }
+
+    /// Alpha along x and y; 0 for a smooth one.
+    #[inline]
+    pub fn alpha(self) -> Vec2 {
+        Vec2::new(self.x, self.y)
+    }
+
+    /// One alpha that stands for both.
+    #[inline]
+    pub fn mean_alpha(self) -> f32 {
+        if self.x == self.y { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
+    }
+
+    /// s(w), see above.
+    #[inline]
+    pub fn stretch(self, w: Vec3) -> f32 {
+        let (x, y) = (self.x * w.x, self.y * w.y);
+        (w.z * w.z + x * x + y * y).sqrt()
+    }
+
+    /// D of the microfacets whose normals go along `m`, which need not be a unit vector; per steradian.
+    #[inline]
+    pub fn density(self, m: Vec3) -> f32 {
+        let (x, y) = (m.x / self.x, m.y / self.y);
+        let ratio = m.length_squared() / (x * x + y * y + m.z * m.z).max(f32::MIN_POSITIVE);
+        ratio * ratio / (PI * self.x * self.y)
+    }
+
+    /// The normal of a microfacet as seen from `wo`, z >= 0, and its density D.
+    #[inline]
+    pub fn sample(self, wo: Vec3, stretch: f32, u: Vec2) -> (Vec3, f32) {
+        let standard = Vec3::new(self.x * wo.x, self.y * wo.y, wo.z) / stretch.max(f32::MIN_POSITIVE);
+        let z = (1.0 - u.x) * (1.0 + standard.z) - standard.z;
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        let (sin, cos) = fun::sin_cos_turns(u.y);
+        let cap = Vec3::new(radius * cos, radius * sin, z) + standard;
+        let m = Vec3::new(self.x * cap.x, self.y * cap.y, cap.z.max(0.0));
+        let squared = m.length_squared().max(f32::MIN_POSITIVE);
+        let ratio = squared / cap.length_squared().max(f32::MIN_POSITIVE);
+        (m / squared.sqrt(), ratio * ratio / (PI * self.x * self.y))
+    }
+
+    /// What [`Ggx::sample`] and a mirror make of a pair of directions, both above the surface.
+    #[inline]
+    pub fn mirror(self, wo: Vec3, wi: Vec3) -> Facing {
+        let m = wo + wi;
+        let (so, si) = (self.stretch(wo), self.stretch(wi));
+        Self::facing(wo.z, wi.z, so, si, 0.5 * m.length(), self.density(m))
+    }
+
+    /// A direction into which `wo` is mirrored, above the surface; `None` where it would go below.
+    #[inline]
+    pub fn sample_mirror(self, wo: Vec3, u: Vec2) -> Option<(Vec3, Facing)> {
+        let so = self.stretch(wo);
+        let (m, density) = self.sample(wo, so, u);
+        let cos = wo.dot(m);
+        let wi = m * (2.0 * cos) - wo;
+        if wi.z <= 0.0 || cos <= 0.0 {
+            return None;
+        }
+        Some((wi, Self::facing(wo.z, wi.z, so, self.stretch(wi), cos, density)))
+    }
+
+    #[inline]
+    fn facing(zo: f32, zi: f32, so: f32, si: f32, cos: f32, density: f32) -> Facing {
+        let cross = (so * zi + si * zo).max(f32::MIN_POSITIVE);
+        Facing { cos, value: 0.5 * density * zi / cross, pdf: 0.5 * density / (zo + so).max(f32::MIN_POSITIVE) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::{Random, chi_squared_directions, close};
+
+    const ALPHAS: [(f32, f32); 5] = [(0.1, 0.1), (0.5, 0.5), (1.0, 1.0), (0.1, 0.6), (0.9, 0.2)];
+
+    #[test]
+    fn normals_cover_the_surface_once() {
+        // ∫ D cos = 1, and the visible ones seen from anywhere cover what is seen: ∫ D G1 max(0, o·m) = zo.
+        let mut random = Random::new(71);
+        for (x, y) in ALPHAS {
+            let ggx = Ggx::new(Vec2::new(x, y));
+            let wo = Vec3::new(0.6, -0.3, random.range(0.1, 1.0)).normalize();
+            let g1 = 2.0 * wo.z / (wo.z + ggx.stretch(wo));
+            let (mut flat, mut seen) = (0.0f64, 0.0f64);
+            let (steps, turns) = (1500, 300);
+            for i in 0..steps {
+                // Even in slopes over alpha, where the density is smooth.
+                let t = (i as f32 + 0.5) / steps as f32;
+                let slope = t / (1.0 - t);
+                for j in 0..turns {
+                    let (sin, cos) = fun::sin_cos_turns((j as f32 + 0.5) / turns as f32);
+                    let m = Vec3::new(x * slope * cos, y * slope * sin, 1.0);
+                    // dω = dx dy / |m|³ over slopes dx dy = αx αy s ds dφ.
+                    let area =
+                        x * y * slope * (std::f32::consts::TAU / turns as f32) / ((1.0 - t) * (1.0 - t) * steps as f32);
+                    let weight = ggx.density(m) * area / m.length().powi(3);
+                    flat += f64::from(weight / m.length());
+                    seen += f64::from(weight * g1 * wo.dot(m.normalize()).max(0.0));
+                }
+            }
+            assert!((flat - 1.0).abs() < 2e-3, "{x} {y}: {flat}");
+            assert!((seen - f64::from(wo.z)).abs() < 3e-3, "{x} {y}: {seen} {wo}");
+        }
+    }
+
+    #[test]
+    fn visible_normals_are_sampled_by_their_density() {
+        for (i, (x, y)) in ALPHAS.into_iter().enumerate() {
+            let ggx = Ggx::new(Vec2::new(x, y));
+            let wo = Vec3::new(0.7, 0.3, [0.4, 0.05, 2.0][i % 3]).normalize();
+            let so = ggx.stretch(wo);
+            let pdf = |m: Vec3| {
+                if m.z > 0.0 { 2.0 * ggx.density(m) * wo.dot(m).max(0.0) / (wo.z + so) } else { 0.0 }
+            };
+            // Turned over, since the test's cells are longest around its z.
+            let turned = |w: Vec3| Vec3::new(w.z, w.x, w.y);
+            let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
+            chi_squared_directions(|u| Some(turned(ggx.sample(wo, so, u).0)), |w| pdf(back(w)), 200_000, 1e-4).unwrap();
+            let (m, density) = ggx.sample(wo, so, Vec2::new(0.3, 0.8));
+            assert!(close(m.length(), 1.0, 1e-6) && close(density, ggx.density(m), 1e-4));
+        }
+    }
+
+    #[test]
+    fn what_is_too_smooth_or_wrong_is_taken_into_range() {
+        assert!(
+            Ggx::isotropic(0.0).is_smooth() && Ggx::isotropic(9e-4).is_smooth() && !Ggx::isotropic(1e-3).is_smooth()
+        );
+        assert_eq!(Ggx::new(Vec2::new(0.0, 3.0)).alpha(), Vec2::new(Ggx::SMOOTH, 1.0));
+        assert_eq!(Ggx::new(Vec2::new(f32::NAN, 0.5)).alpha(), Vec2::new(Ggx::SMOOTH, 0.5));
+    }
+}

@@ -1,0 +1,34 @@
+//! Light is spread evenly over all directions, whichever it comes from (Lambert 1760).
+
+use super::{BsdfSample, Scatter};
+use juggler_math::{Rgb, Vec2, Vec3, warp};
+use std::f32::consts::FRAC_1_PI;
+
+/// A matt surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lambert {
+    /// Share of light that is given back, 0 to 1.
+    pub albedo: Rgb,
+}
+
+impl Lambert {
+    /// f |cos θi|, and the density per steradian.
+    #[inline]
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return (Rgb::BLACK, 0.0);
+        }
+        let pdf = wi.z * FRAC_1_PI;
+        (self.albedo * pdf, pdf)
+    }
+
+    /// A direction by cosine.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        let wi = warp::cosine_hemisphere(u);
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return None;
+        }
+        Some(BsdfSample { wi, weight: self.albedo, pdf: wi.z * FRAC_1_PI, scatter: Scatter::Diffuse, ior: 1.0 })
+    }
+}

@@ -1,0 +1,128 @@
+//! The lobes that a [`Bsdf`](super::Bsdf) is made of: a closed set, each in a file of its own.
+
+use super::{BsdfSample, Conductor, Dielectric, Lambert, Scatter, ThinDielectric};
+use arrayvec::ArrayVec;
+use juggler_math::{Rgb, Vec2, Vec3};
+
+/// Deltas of one lobe.
+pub type Deltas = ArrayVec<BsdfSample, 2>;
+
+/// One way of scattering light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// Matt.
+    Lambert(Lambert),
+    /// Metal.
+    Conductor(Conductor),
+    /// A border between clear media.
+    Dielectric(Dielectric),
+    /// A pane of glass.
+    Thin(ThinDielectric),
+}
+
+macro_rules! from {
+    ($($kind:ident($lobe:ty)),*) => {$(
+        impl From<$lobe> for Lobe {
+            #[inline]
+            fn from(lobe: $lobe) -> Self {
+                Self::$kind(lobe)
+            }
+        }
+    )*};
+}
+
+from!(Lambert(Lambert), Conductor(Conductor), Dielectric(Dielectric), Thin(ThinDielectric));
+
+impl Lobe {
+    /// f |cos θi| and the density of [`Lobe::sample`] per steradian, both without deltas.
+    #[inline]
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        match self {
+            Self::Lambert(lobe) => lobe.eval_pdf(wo, wi),
+            Self::Conductor(lobe) => lobe.eval_pdf(wo, wi),
+            Self::Dielectric(lobe) => lobe.eval_pdf(wo, wi),
+            Self::Thin(lobe) => lobe.eval_pdf(wo, wi),
+        }
+    }
+
+    /// A direction, by a point in the unit square.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        match self {
+            Self::Lambert(lobe) => lobe.sample(wo, u),
+            Self::Conductor(lobe) => lobe.sample(wo, u),
+            Self::Dielectric(lobe) => lobe.sample(wo, u),
+            Self::Thin(lobe) => lobe.sample(wo, u),
+        }
+    }
+
+    /// See [`Bsdf::albedo`](super::Bsdf::albedo). Never black where the lobe is not.
+    #[inline]
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        match self {
+            Self::Lambert(lobe) => {
+                if wo.z > 0.0 {
+                    lobe.albedo
+                } else {
+                    Rgb::BLACK
+                }
+            }
+            Self::Conductor(lobe) => lobe.albedo(wo),
+            Self::Dielectric(lobe) => lobe.albedo(wo),
+            Self::Thin(lobe) => lobe.albedo(wo),
+        }
+    }
+
+    /// Whether there are only deltas.
+    #[inline]
+    pub fn is_specular(&self) -> bool {
+        match self {
+            Self::Lambert(_) => false,
+            Self::Conductor(lobe) => lobe.is_smooth(),
+            Self::Dielectric(lobe) => lobe.is_smooth(),
+            Self::Thin(lobe) => lobe.is_smooth(),
+        }
+    }
+
+    /// Whether there is any delta.
+    #[inline]
+    pub fn has_specular(&self) -> bool {
+        self.is_specular()
+    }
+
+    /// Every delta with its full weight.
+    pub fn deltas(&self, wo: Vec3) -> Deltas {
+        match self {
+            Self::Lambert(_) => Deltas::new(),
+            Self::Conductor(lobe) => lobe.deltas(wo),
+            Self::Dielectric(lobe) => lobe.deltas(wo),
+            Self::Thin(lobe) => lobe.deltas(wo),
+        }
+    }
+}
+
+/// A delta of weight 1 picked for sure.
+#[inline]
+pub(crate) fn delta(wi: Vec3, weight: Rgb, ior: f32) -> BsdfSample {
+    BsdfSample { wi, weight, pdf: 1.0, scatter: Scatter::Specular, ior }
+}
+
+/// One of two deltas, by the energy that each carries.
+#[inline]
+pub(crate) fn one_of_two(first: BsdfSample, second: BsdfSample, u: f32) -> Option<BsdfSample> {
+    let energy = |delta: &BsdfSample| sum(delta.weight) * (delta.ior * delta.ior);
+    let (a, b) = (energy(&first), energy(&second));
+    if a + b <= 0.0 {
+        return None;
+    }
+    let probability = a / (a + b);
+    let (is_first, _) = super::choose(u, probability);
+    let (picked, probability) = if is_first { (first, probability) } else { (second, 1.0 - probability) };
+    Some(BsdfSample { weight: picked.weight / probability, pdf: probability, ..picked })
+}
+
+/// Of all channels.
+#[inline]
+pub(crate) fn sum(color: Rgb) -> f32 {
+    color.r + color.g + color.b
+}

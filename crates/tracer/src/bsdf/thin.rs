@@ -1,0 +1,165 @@
+//! A sheet of a clear medium too thin to be modelled by two borders: a window pane, a soap bubble. Light is mirrored
+//! to and fro within it, and leaves where it came in: with F Fresnel's share at one border, R = F + F (1 - F)² / (1 - F²)
+//! = 2F / (1 + F) is mirrored in all and 1 - R goes straight on (PBR 4th ed., section 9.5.1).
+//!
+//! A rough one spreads both alike, as the extension KHR_materials_transmission of glTF has it: what goes through is
+//! what is mirrored, turned over at the surface.
+
+use super::ggx::Ggx;
+use super::lobe::{Deltas, delta, one_of_two, sum};
+use super::{BsdfSample, Scatter, choose, energy, fresnel};
+use juggler_math::{Rgb, Vec2, Vec3, warp};
+use std::f32::consts::FRAC_1_PI;
+
+/// A thin sheet, the same from either side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinDielectric {
+    ggx: Ggx,
+    ior: f32,
+    /// Factor on mirrored light, 0 to 1.
+    pub reflection: Rgb,
+    /// Factor on light that goes through, 0 to 1.
+    pub transmission: Rgb,
+    compensated: bool,
+}
+
+impl ThinDielectric {
+    /// With single scattering only. `ior` is the index of the sheet over that around it, `alpha` as in [`Ggx`].
+    #[inline]
+    pub fn new(ior: f32, alpha: Vec2) -> Self {
+        let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
+        Self { ggx: Ggx::new(alpha), ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, compensated: false }
+    }
+
+    /// With all scattering among its microfacets.
+    #[inline]
+    pub fn compensated(ior: f32, alpha: Vec2) -> Self {
+        Self { compensated: true, ..Self::new(ior, alpha) }
+    }
+
+    /// The same in other colours.
+    #[inline]
+    pub fn tinted(self, reflection: Rgb, transmission: Rgb) -> Self {
+        Self { reflection, transmission, ..self }
+    }
+
+    /// Whether it only mirrors and lets through, without spread.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.ggx.is_smooth()
+    }
+
+    /// R at an angle of cosine `cos`.
+    #[inline]
+    fn share(&self, cos: f32) -> f32 {
+        if self.ior == 1.0 {
+            return 0.0;
+        }
+        let once = fresnel::dielectric(cos, self.ior);
+        2.0 * once / (1.0 + once)
+    }
+
+    /// Probability of mirrored light.
+    #[inline]
+    fn mirrored(&self, cos: f32) -> f32 {
+        let share = energy::mirrored_share(cos, self.ggx.mean_alpha(), |cos| self.share(cos));
+        let (r, t) = (share * sum(self.reflection), (1.0 - share) * sum(self.transmission));
+        if r + t > 0.0 { r / (r + t) } else { 0.5 }
+    }
+
+    /// How much of the light that is scattered more than once is mirrored.
+    fn average(&self) -> f32 {
+        let once = fresnel::dielectric_average(self.ior);
+        2.0 * once / (1.0 + once)
+    }
+
+    /// f |cos θi|, and the density per steradian.
+    #[inline]
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if wo.z == 0.0 || wi.z == 0.0 || self.is_smooth() {
+            return (Rgb::BLACK, 0.0);
+        }
+        let is_mirrored = wo.z * wi.z > 0.0;
+        let (o, i) = (Vec3::new(wo.x, wo.y, wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));
+        let facing = self.ggx.mirror(o, i);
+        let (share, probability) = (self.share(facing.cos), self.mirrored(o.z));
+        let (color, average) =
+            if is_mirrored { (self.reflection, self.average()) } else { (self.transmission, 1.0 - self.average()) };
+        let (share, probability) = if is_mirrored { (share, probability) } else { (1.0 - share, 1.0 - probability) };
+        let (mut value, mut pdf) = (share * facing.value, probability * facing.pdf);
+        if self.compensated {
+            let alpha = self.ggx.mean_alpha();
+            let lost = energy::mirror_loss(o.z, alpha);
+            let out = energy::mirror_loss(i.z, alpha) / energy::mirror_loss_average(alpha);
+            let cosine = i.z * FRAC_1_PI * average * lost;
+            value += cosine * out;
+            pdf = pdf * (1.0 - lost) + cosine;
+        }
+        (color * value, pdf)
+    }
+
+    /// A direction: mirrored or let through as often as Fresnel's share around `wo` says.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        if self.is_smooth() {
+            let [mirrored, through] = self.both(wo);
+            return one_of_two(mirrored, through, u.x);
+        }
+        let up = Vec3::new(wo.x, wo.y, wo.z.abs());
+        let (wi, scatter) = self.pick(up, u)?;
+        let wi = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
+        let (value, pdf) = self.eval_pdf(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
+    }
+
+    fn pick(&self, wo: Vec3, u: Vec2) -> Option<(Vec3, Scatter)> {
+        let lost = if self.compensated { energy::mirror_loss(wo.z, self.ggx.mean_alpha()) } else { 0.0 };
+        let (is_multiple, x) = choose(u.x, lost);
+        let probability = if is_multiple { self.average() } else { self.mirrored(wo.z) };
+        let (is_mirrored, x) = choose(x, probability);
+        let u = Vec2::new(x, u.y);
+        let (wi, scatter) = if is_multiple {
+            (warp::cosine_hemisphere(u), Scatter::Diffuse)
+        } else {
+            (self.ggx.sample_mirror(wo, u)?.0, Scatter::Glossy)
+        };
+        Some((if is_mirrored { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
+    }
+
+    fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
+        let share = self.share(wo.z.abs());
+        let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
+        [mirrored, delta(-wo, self.transmission * (1.0 - share), 1.0)]
+    }
+
+    /// What is mirrored and what goes through, each in its colour.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        if wo.z == 0.0 {
+            return Rgb::BLACK;
+        }
+        let (cos, alpha) = (wo.z.abs(), self.ggx.mean_alpha());
+        if self.is_smooth() {
+            let share = self.share(cos);
+            return self.reflection * share + self.transmission * (1.0 - share);
+        }
+        let lost = energy::mirror_loss(cos, alpha);
+        let share = energy::mirrored_share(cos, alpha, |cos| self.share(cos));
+        let once = (self.reflection * share + self.transmission * (1.0 - share)) * (1.0 - lost);
+        if !self.compensated {
+            return once;
+        }
+        let average = self.average();
+        once + (self.reflection * average + self.transmission * (1.0 - average)) * lost
+    }
+
+    /// Mirrored and straight on, if it is smooth; not those of no weight.
+    pub fn deltas(&self, wo: Vec3) -> Deltas {
+        if !self.is_smooth() || wo.z == 0.0 {
+            return Deltas::new();
+        }
+        self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+    }
+}
