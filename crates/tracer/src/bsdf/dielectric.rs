@@ -90,13 +90,18 @@ impl Dielectric {
     fn view(&self, wo: Vec3) -> View {
         let ior = self.ior_from(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let share = energy::mirrored_share(wo.z, self.ggx.mean_alpha(), |cos| fresnel::dielectric(cos, ior));
+        let share = energy::mirrored_share(wo.z, self.ggx.alpha_towards(wo), |cos| fresnel::dielectric(cos, ior));
         let (r, t) = (share * sum(self.reflection), (1.0 - share) * sum(self.transmission));
         let mirrored = if r + t > 0.0 { r / (r + t) } else { 0.5 };
-        View { wo, ior, mirrored, multiple: self.compensated.then(|| self.multiple(wo.z, ior)) }
+        View { wo, ior, mirrored, multiple: self.compensated.then(|| self.multiple(wo, ior)) }
     }
 
-    fn multiple(&self, cos: f32, ior: f32) -> Multiple {
+    /// L of light along `w`, for the index behind the border over that in front.
+    fn lost(&self, w: Vec3, ior: f32) -> f32 {
+        energy::dielectric_loss(w.z.abs(), self.ggx.alpha_towards(w), ior)
+    }
+
+    fn multiple(&self, wo: Vec3, ior: f32) -> Multiple {
         let alpha = self.ggx.mean_alpha();
         let here = energy::dielectric_average(alpha, ior);
         let there = energy::dielectric_average(alpha, 1.0 / ior);
@@ -107,7 +112,7 @@ impl Dielectric {
         let lost = [here.lost, there.lost];
         let c = (lost[0] / (1.0 - lost[0])).min(lost[1] / (1.0 - lost[1]));
         let through = if lost[0] > 0.0 { (c * through / lost[0]).min(1.0) } else { 0.0 };
-        Multiple { lost: energy::dielectric_loss(cos, alpha, ior), through, average: lost }
+        Multiple { lost: self.lost(wo, ior), through, average: lost }
     }
 
     /// f |cos θi|, and the density per steradian.
@@ -161,13 +166,12 @@ impl Dielectric {
 
     /// What is scattered more than once, but for cosine and π: and the probability of that side.
     fn eval_multiple(&self, view: &View, multiple: &Multiple, wi: Vec3) -> (Rgb, f32) {
-        let alpha = self.ggx.mean_alpha();
         let Multiple { lost, through, average } = *multiple;
         if wi.z > 0.0 {
-            let out = energy::dielectric_loss(wi.z, alpha, view.ior) / average[0].max(f32::MIN_POSITIVE);
+            let out = self.lost(wi, view.ior) / average[0].max(f32::MIN_POSITIVE);
             (self.reflection * ((1.0 - through) * lost * out), 1.0 - through)
         } else {
-            let out = energy::dielectric_loss(-wi.z, alpha, 1.0 / view.ior) / average[1].max(f32::MIN_POSITIVE);
+            let out = self.lost(wi, 1.0 / view.ior) / average[1].max(f32::MIN_POSITIVE);
             (self.transmission * (through * lost * out / (view.ior * view.ior)), through)
         }
     }
@@ -234,7 +238,7 @@ impl Dielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.mean_alpha());
+        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.alpha_towards(wo));
         if self.is_smooth() {
             let share = if ior == 1.0 { 0.0 } else { fresnel::dielectric(cos, ior) };
             return self.reflection * share + self.transmission * (1.0 - share);
@@ -243,7 +247,7 @@ impl Dielectric {
             (energy::dielectric_mirrored(cos, alpha, ior), energy::dielectric_loss(cos, alpha, ior));
         let mut through = 1.0 - mirrored - lost;
         if self.compensated {
-            let multiple = self.multiple(cos, ior);
+            let multiple = self.multiple(wo, ior);
             mirrored += lost * (1.0 - multiple.through);
             through += lost * multiple.through;
         }

@@ -67,6 +67,11 @@ impl ThinDielectric {
         if r + t > 0.0 { r / (r + t) } else { 0.5 }
     }
 
+    /// What single scattering loses of light along `w`.
+    fn lost(&self, w: Vec3) -> f32 {
+        energy::mirror_loss(w.z.abs(), self.ggx.alpha_towards(w))
+    }
+
     /// How much of the light that is scattered more than once is mirrored.
     fn average(&self) -> f32 {
         let once = fresnel::dielectric_average(self.ior);
@@ -88,9 +93,8 @@ impl ThinDielectric {
         let (share, probability) = if is_mirrored { (share, probability) } else { (1.0 - share, 1.0 - probability) };
         let (mut value, mut pdf) = (share * facing.value, probability * facing.pdf);
         if self.compensated {
-            let alpha = self.ggx.mean_alpha();
-            let lost = energy::mirror_loss(o.z, alpha);
-            let out = energy::mirror_loss(i.z, alpha) / energy::mirror_loss_average(alpha);
+            let lost = self.lost(o);
+            let out = self.lost(i) / energy::mirror_loss_average(self.ggx.mean_alpha());
             let cosine = i.z * FRAC_1_PI * average * lost;
             value += cosine * out;
             pdf = pdf * (1.0 - lost) + cosine;
@@ -116,7 +120,7 @@ impl ThinDielectric {
     }
 
     fn pick(&self, wo: Vec3, u: Vec2) -> Option<(Vec3, Scatter)> {
-        let lost = if self.compensated { energy::mirror_loss(wo.z, self.ggx.mean_alpha()) } else { 0.0 };
+        let lost = if self.compensated { self.lost(wo) } else { 0.0 };
         let (is_multiple, x) = choose(u.x, lost);
         let probability = if is_multiple { self.average() } else { self.mirrored(wo.z) };
         let (is_mirrored, x) = choose(x, probability);
@@ -140,7 +144,7 @@ impl ThinDielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (cos, alpha) = (wo.z.abs(), self.ggx.mean_alpha());
+        let (cos, alpha) = (wo.z.abs(), self.ggx.alpha_towards(wo));
         if self.is_smooth() {
             let share = self.share(cos);
             return self.reflection * share + self.transmission * (1.0 - share);
