@@ -27,7 +27,8 @@ struct Weighted {
     weight: f32,
     /// Of a matt lobe in layers: 1 / T̄.
     scale: f32,
-    is_layer: bool,
+    /// How much of what comes below it dims: 0 of what is no layer.
+    cover: f32,
     lobe: Lobe,
 }
 
@@ -35,10 +36,10 @@ impl Weighted {
     /// What it leaves to those below of light along `w`.
     #[inline]
     fn leaves(&self, w: Vec3) -> f32 {
-        if !self.is_layer || w.z <= 0.0 {
+        if self.cover == 0.0 || w.z <= 0.0 {
             return 1.0;
         }
-        (1.0 - self.weight * self.lobe.albedo(w).max_channel()).max(0.0)
+        (1.0 - self.cover * self.lobe.albedo(w).max_channel()).max(0.0)
     }
 
     /// What layers over it leave, by what they leave along both directions.
@@ -81,19 +82,25 @@ impl Bsdf {
     /// Adds `weight`, 0 to 1, of a lobe; none of it at 0.
     #[inline]
     pub fn push_scaled(&mut self, lobe: impl Into<Lobe>, weight: f32) {
-        self.push_any(Weighted { weight, scale: 1.0, is_layer: false, lobe: lobe.into() });
+        self.push_any(Weighted { weight, scale: 1.0, cover: 0.0, lobe: lobe.into() });
     }
 
     /// Adds `weight`, 0 to 1, of a lobe that lies over those to come and dims them.
     #[inline]
     pub fn push_layer(&mut self, lobe: impl Into<Lobe>, weight: f32) {
-        self.push_any(Weighted { weight, scale: 1.0, is_layer: true, lobe: lobe.into() });
+        self.push_any(Weighted { weight, scale: 1.0, cover: weight, lobe: lobe.into() });
+    }
+
+    /// Adds `weight` of a lobe that wholly dims those to come: they are part of the same share of the surface.
+    #[inline]
+    pub fn push_coat(&mut self, lobe: impl Into<Lobe>, weight: f32) {
+        self.push_any(Weighted { weight, scale: 1.0, cover: 1.0, lobe: lobe.into() });
     }
 
     #[inline]
     fn push_any(&mut self, mut lobe: Weighted) {
         if lobe.weight > 0.0 {
-            if lobe.lobe.is_matt() && self.lobes.iter().any(|one| one.is_layer) {
+            if lobe.lobe.is_matt() && self.lobes.iter().any(|one| one.cover > 0.0) {
                 lobe.scale = 1.0 / self.mean_left().max(1e-3);
             }
             let full = self.lobes.try_push(lobe);
@@ -198,7 +205,7 @@ impl Bsdf {
             };
             value += part * (one.weight * one.dimmed(wo, wi, left_o, left_i));
             density += pdf * share;
-            if one.is_layer {
+            if one.cover > 0.0 {
                 (left_o, left_i) = (left_o * one.leaves(wo), left_i * one.leaves(wi));
             }
         }
@@ -217,11 +224,11 @@ impl Bsdf {
         let mut shares = [0.0; MAX_LOBES];
         let (mut sum, mut left) = (0.0, 1.0);
         for (share, one) in shares.iter_mut().zip(&self.lobes) {
-            let albedo = one.lobe.albedo(wo) * one.weight;
-            *share = super::lobe::sum(albedo) * left;
+            let albedo = one.lobe.albedo(wo);
+            *share = super::lobe::sum(albedo) * one.weight * left;
             sum += *share;
-            if one.is_layer && wo.z > 0.0 {
-                left *= (1.0 - albedo.max_channel()).max(0.0);
+            if one.cover > 0.0 && wo.z > 0.0 {
+                left *= (1.0 - one.cover * albedo.max_channel()).max(0.0);
             }
         }
         if sum > 0.0 {

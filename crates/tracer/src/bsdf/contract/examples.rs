@@ -20,19 +20,19 @@ pub(super) struct Example {
 }
 
 impl Example {
-    fn new(name: impl Into<String>, bsdf: impl Into<Bsdf>) -> Self {
+    pub fn new(name: impl Into<String>, bsdf: impl Into<Bsdf>) -> Self {
         Self { name: name.into(), bsdf: bsdf.into(), both_sides: false, white_within: 0.0, is_broad: true }
     }
 
-    fn both_sides(self) -> Self {
+    pub fn both_sides(self) -> Self {
         Self { both_sides: true, ..self }
     }
 
-    fn white(self, within: f32) -> Self {
+    pub fn white(self, within: f32) -> Self {
         Self { white_within: within, ..self }
     }
 
-    fn narrow(self) -> Self {
+    pub fn narrow(self) -> Self {
         Self { is_broad: false, ..self }
     }
 }
@@ -58,6 +58,7 @@ pub(super) fn examples() -> Vec<Example> {
     all.extend(plastics());
     all.extend(films());
     all.extend(classics());
+    all.extend(super::principled::examples());
     all
 }
 
