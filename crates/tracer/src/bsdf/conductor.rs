@@ -69,7 +69,7 @@ impl Conductor {
 
     /// 1 - E.
     fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_loss(w.z, self.ggx.mean_alpha())
+        energy::mirror_loss(w.z, self.ggx.alpha_towards(w))
     }
 
     /// A direction by visible normals, or by cosine as often as single scattering loses light.
@@ -112,20 +112,17 @@ impl Conductor {
         delta(Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel.at(wo.z), 1.0)
     }
 
-    /// Fresnel's share where the surface itself would mirror, times what its roughness leaves.
+    /// What is mirrored once and, if compensated, more often.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
         }
-        if self.is_smooth() {
-            return self.fresnel.at(wo.z);
+        let single = self.fresnel.mirrored(wo.z, self.ggx.alpha_towards(wo));
+        if self.multiple.is_black() {
+            return single;
         }
-        let alpha = self.ggx.mean_alpha();
-        let lost = energy::mirror_loss(wo.z, alpha);
-        // Rough surfaces turn their facets to the viewer.
-        let single = self.fresnel.at(wo.z + (1.0 - wo.z) * 1.2 * alpha / (1.0 + alpha)) * (1.0 - lost);
-        let average = energy::mirror_loss_average(alpha);
-        single + self.multiple * (lost * average * std::f32::consts::PI)
+        let average = energy::mirror_loss_average(self.ggx.mean_alpha());
+        single + self.multiple * (self.lost(wo) * average * std::f32::consts::PI)
     }
 
     /// The mirror's, if it is smooth.

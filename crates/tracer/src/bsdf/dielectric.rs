@@ -10,7 +10,7 @@
 
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta, one_of_two, sum};
-use super::{BsdfSample, Scatter, choose, energy, fresnel};
+use super::{BsdfSample, Film, Scatter, choose, energy, fresnel};
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
 
@@ -23,6 +23,8 @@ pub struct Dielectric {
     pub reflection: Rgb,
     /// Factor on light that goes through, 0 to 1, the same both ways.
     pub transmission: Rgb,
+    /// A thin film on it, seen from above, and how much of it that covers.
+    pub film: Option<(Film, f32)>,
     compensated: bool,
 }
 
@@ -59,7 +61,7 @@ impl Dielectric {
     pub fn new(ior: f32, alpha: Vec2) -> Self {
         let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
         let ggx = if (ior - 1.0).abs() < Self::NO_BORDER { Ggx::isotropic(0.0) } else { Ggx::new(alpha) };
-        Self { ggx, ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, compensated: false }
+        Self { ggx, ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, film: None, compensated: false }
     }
 
     /// With all scattering among its microfacets.
@@ -86,17 +88,33 @@ impl Dielectric {
         if w.z < 0.0 { 1.0 / self.ior } else { self.ior }
     }
 
+    /// Fresnel's share at an angle of cosine `cos`, for the index behind over that in front.
+    #[inline]
+    fn share(&self, cos: f32, ior: f32) -> Rgb {
+        let plain = fresnel::dielectric(cos, ior);
+        let Some((film, amount)) = self.film.filter(|_| plain < 1.0) else { return Rgb::splat(plain) };
+        // A film's angle is that above it, on whichever side light comes.
+        let is_below = ior != self.ior;
+        let above = if is_below { (1.0 - (1.0 - cos * cos) / (ior * ior)).max(0.0).sqrt() } else { cos };
+        Rgb::splat(plain).lerp(film.at(above), amount)
+    }
+
     #[inline]
     fn view(&self, wo: Vec3) -> View {
         let ior = self.ior_from(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let share = energy::mirrored_share(wo.z, self.ggx.mean_alpha(), |cos| fresnel::dielectric(cos, ior));
+        let share = energy::mirrored_share(wo.z, self.ggx.alpha_towards(wo), |cos| sum(self.share(cos, ior)) / 3.0);
         let (r, t) = (share * sum(self.reflection), (1.0 - share) * sum(self.transmission));
         let mirrored = if r + t > 0.0 { r / (r + t) } else { 0.5 };
-        View { wo, ior, mirrored, multiple: self.compensated.then(|| self.multiple(wo.z, ior)) }
+        View { wo, ior, mirrored, multiple: self.compensated.then(|| self.multiple(wo, ior)) }
     }
 
-    fn multiple(&self, cos: f32, ior: f32) -> Multiple {
+    /// L of light along `w`, for the index behind the border over that in front.
+    fn lost(&self, w: Vec3, ior: f32) -> f32 {
+        energy::dielectric_loss(w.z.abs(), self.ggx.alpha_towards(w), ior)
+    }
+
+    fn multiple(&self, wo: Vec3, ior: f32) -> Multiple {
         let alpha = self.ggx.mean_alpha();
         let here = energy::dielectric_average(alpha, ior);
         let there = energy::dielectric_average(alpha, 1.0 / ior);
@@ -107,7 +125,7 @@ impl Dielectric {
         let lost = [here.lost, there.lost];
         let c = (lost[0] / (1.0 - lost[0])).min(lost[1] / (1.0 - lost[1]));
         let through = if lost[0] > 0.0 { (c * through / lost[0]).min(1.0) } else { 0.0 };
-        Multiple { lost: energy::dielectric_loss(cos, alpha, ior), through, average: lost }
+        Multiple { lost: self.lost(wo, ior), through, average: lost }
     }
 
     /// f |cos θi|, and the density per steradian.
@@ -124,8 +142,8 @@ impl Dielectric {
     fn eval_pdf_in(&self, view: &View, wi: Vec3) -> (Rgb, f32) {
         let (single, pdf) = if wi.z > 0.0 {
             let facing = self.ggx.mirror(view.wo, wi);
-            let share = fresnel::dielectric(facing.cos, view.ior);
-            (self.reflection * (share * facing.value), facing.pdf * view.mirrored)
+            let share = self.share(facing.cos, view.ior);
+            (self.reflection * share * facing.value, facing.pdf * view.mirrored)
         } else {
             let (value, pdf) = self.refracted(view, wi);
             (self.transmission * value, pdf * (1.0 - view.mirrored))
@@ -142,32 +160,31 @@ impl Dielectric {
 
     /// Radiance that goes through and its density, given that it does.
     #[inline]
-    fn refracted(&self, view: &View, wi: Vec3) -> (f32, f32) {
+    fn refracted(&self, view: &View, wi: Vec3) -> (Rgb, f32) {
         let (wo, ior) = (view.wo, view.ior);
         let m = wo + wi * ior;
         let m = if m.z < 0.0 { -m } else { m };
         let squared = m.length_squared();
         let (o, i) = (wo.dot(m), -wi.dot(m));
         if o <= 0.0 || i <= 0.0 || squared <= 0.0 {
-            return (0.0, 0.0);
+            return (Rgb::BLACK, 0.0);
         }
-        let share = 1.0 - fresnel::dielectric(o / squared.sqrt(), ior);
+        let share = Rgb::WHITE - self.share(o / squared.sqrt(), ior);
         let (so, si, zi) = (self.ggx.stretch(wo), self.ggx.stretch(wi), -wi.z);
         // D |o·m| |i·m| / |m|²: what solid angle of normals one of directions is.
         let common = 2.0 * self.ggx.density(m) * o * i / (squared * squared);
-        let value = share * common * zi / (so * zi + si * wo.z);
+        let value = share * (common * zi / (so * zi + si * wo.z));
         (value, common * ior * ior / (wo.z + so))
     }
 
     /// What is scattered more than once, but for cosine and π: and the probability of that side.
     fn eval_multiple(&self, view: &View, multiple: &Multiple, wi: Vec3) -> (Rgb, f32) {
-        let alpha = self.ggx.mean_alpha();
         let Multiple { lost, through, average } = *multiple;
         if wi.z > 0.0 {
-            let out = energy::dielectric_loss(wi.z, alpha, view.ior) / average[0].max(f32::MIN_POSITIVE);
+            let out = self.lost(wi, view.ior) / average[0].max(f32::MIN_POSITIVE);
             (self.reflection * ((1.0 - through) * lost * out), 1.0 - through)
         } else {
-            let out = energy::dielectric_loss(-wi.z, alpha, 1.0 / view.ior) / average[1].max(f32::MIN_POSITIVE);
+            let out = self.lost(wi, 1.0 / view.ior) / average[1].max(f32::MIN_POSITIVE);
             (self.transmission * (through * lost * out / (view.ior * view.ior)), through)
         }
     }
@@ -220,11 +237,11 @@ impl Dielectric {
     /// The two deltas of a smooth border, mirrored and refracted.
     fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
         let ior = self.ior_from(wo);
-        let share = if ior == 1.0 { 0.0 } else { fresnel::dielectric(wo.z.abs(), ior) };
+        let share = if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(wo.z.abs(), ior) };
         let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
         let (wi, through) = match fresnel::refract(wo, Vec3::Z, 1.0 / ior) {
-            Some(wi) => (wi, (1.0 - share) / (ior * ior)),
-            None => (-wo, 0.0),
+            Some(wi) => (wi, (Rgb::WHITE - share) / (ior * ior)),
+            None => (-wo, Rgb::BLACK),
         };
         [mirrored, delta(wi, self.transmission * through, ior)]
     }
@@ -234,16 +251,16 @@ impl Dielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.mean_alpha());
+        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.alpha_towards(wo));
         if self.is_smooth() {
-            let share = if ior == 1.0 { 0.0 } else { fresnel::dielectric(cos, ior) };
-            return self.reflection * share + self.transmission * (1.0 - share);
+            let share = if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) };
+            return self.reflection * share + self.transmission * (Rgb::WHITE - share);
         }
         let (mut mirrored, lost) =
             (energy::dielectric_mirrored(cos, alpha, ior), energy::dielectric_loss(cos, alpha, ior));
         let mut through = 1.0 - mirrored - lost;
         if self.compensated {
-            let multiple = self.multiple(cos, ior);
+            let multiple = self.multiple(wo, ior);
             mirrored += lost * (1.0 - multiple.through);
             through += lost * multiple.through;
         }

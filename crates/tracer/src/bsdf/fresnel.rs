@@ -100,78 +100,6 @@ pub fn head_on(relative_ior: f32) -> f32 {
     r * r
 }
 
-/// How a metal, or what is treated like one, mirrors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fresnel {
-    /// By its complex index of refraction: exact for unpolarised light.
-    Complex {
-        /// Real part of the index, per channel.
-        eta: Rgb,
-        /// Extinction, per channel.
-        k: Rgb,
-    },
-    /// By colours: Schlick's curve, bent so that it is `edge` times as high at an angle of cosine 1/7, some 82
-    /// degrees (Kutz, Hašan and Edmondson 2021; Hoffman 2023: "F82 tint").
-    Tinted {
-        /// Colour head on, 0 to 1.
-        f0: Rgb,
-        /// `17.65 (f0 + (1 - f0) (6/7)⁵) (1 - edge)`: black for plain Schlick. See [`Fresnel::tinted`].
-        bend: Rgb,
-    },
-    /// Schlick's curve to any colour at grazing angles.
-    Schlick {
-        /// Colour head on, 0 to 1.
-        f0: Rgb,
-        /// Colour at a grazing angle, 0 to 1.
-        f90: Rgb,
-    },
-}
-
-impl Fresnel {
-    /// Mirrors everything.
-    pub const WHITE: Self = Self::Tinted { f0: Rgb::WHITE, bend: Rgb::BLACK };
-
-    /// By the colour `f0` head on and the factor `edge` on Schlick's curve at 82 degrees, both 0 to 1.
-    pub fn tinted(f0: Rgb, edge: Rgb) -> Self {
-        // (6/7)⁵ and 7 (7/6)⁶: Schlick's curve there, and over what the bend's own curve is there.
-        let there = f0 + (Rgb::WHITE - f0) * 0.462_664_4;
-        Self::Tinted { f0, bend: there * (Rgb::WHITE - edge) * 17.651_278 }
-    }
-
-    /// The share that is mirrored at an angle of cosine `cos`, 0 to 1.
-    #[inline]
-    pub fn at(&self, cos: f32) -> Rgb {
-        match self {
-            Self::Complex { eta, k } => {
-                Rgb::new(conductor(cos, eta.r, k.r), conductor(cos, eta.g, k.g), conductor(cos, eta.b, k.b))
-            }
-            Self::Tinted { f0, bend } => {
-                let m = (1.0 - cos).clamp(0.0, 1.0);
-                let m5 = m * m * m * m * m;
-                let curve = *f0 + (Rgb::WHITE - *f0) * m5 - *bend * (cos * m5 * m);
-                curve.map(|share| share.clamp(0.0, 1.0))
-            }
-            Self::Schlick { f0, f90 } => schlick(cos, *f0, *f90),
-        }
-    }
-
-    /// The mean over all directions, each weighted by its cosine: what is mirrored of even light. Exact for colours;
-    /// an index of refraction is taken by the colours that fit it best, within 0.01.
-    pub fn average(&self) -> Rgb {
-        match self {
-            Self::Complex { .. } => {
-                let f0 = self.at(1.0);
-                let there = f0 + (Rgb::WHITE - f0) * 0.462_664_4;
-                let at = self.at(1.0 / 7.0);
-                let bend = (there - at) * 17.651_278;
-                f0 + (Rgb::WHITE - f0) / 21.0 - bend / 126.0
-            }
-            Self::Tinted { f0, bend } => *f0 + (Rgb::WHITE - *f0) / 21.0 - *bend / 126.0,
-            Self::Schlick { f0, f90 } => *f0 + (*f90 - *f0) / 21.0,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,29 +236,6 @@ mod tests {
             };
             let (sum, mean) = ((0..steps).map(at).sum::<f64>() as f32, dielectric_average(ior));
             assert!(close(mean, sum, 1e-3), "{ior}: {mean} {sum}");
-        }
-    }
-
-    #[test]
-    fn tinted_curves_pass_through_their_colours_and_averages_are_means() {
-        let (f0, edge) = (Rgb::new(0.9, 0.5, 0.2), Rgb::new(0.8, 1.0, 0.6));
-        let fresnel = Fresnel::tinted(f0, edge);
-        assert_eq!(fresnel.at(1.0), f0);
-        let plain = schlick(1.0 / 7.0, f0, Rgb::WHITE);
-        let at = fresnel.at(1.0 / 7.0);
-        assert!(close(at.r, plain.r * 0.8, 1e-5) && close(at.g, plain.g, 1e-5) && close(at.b, plain.b * 0.6, 1e-5));
-        let gold = Fresnel::Complex { eta: Rgb::new(0.156, 0.424, 1.383), k: Rgb::new(3.602, 2.472, 1.915) };
-        let glossy = Fresnel::Schlick { f0: Rgb::splat(0.04), f90: Rgb::splat(0.5) };
-        for (fresnel, tolerance) in [(fresnel, 1e-4), (gold, 0.01), (glossy, 1e-4), (Fresnel::WHITE, 1e-6)] {
-            let steps = 4000;
-            let sum = (0..steps).fold(Rgb::BLACK, |sum, i| {
-                let cos = (i as f32 + 0.5) / steps as f32;
-                sum + fresnel.at(cos) * (2.0 * cos)
-            });
-            let (mean, average) = (sum / steps as f32, fresnel.average());
-            for (a, b) in mean.to_array().into_iter().zip(average.to_array()) {
-                assert!(close(a, b, tolerance), "{fresnel:?}: {mean:?} {average:?}");
-            }
         }
     }
 }

@@ -69,6 +69,17 @@ impl Ggx {
         if self.x == self.y { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
     }
 
+    /// One alpha that stands for both where light goes along `w`: at a grazing angle what counts is the slopes along it,
+    /// head on both alike.
+    #[inline]
+    pub fn alpha_towards(self, w: Vec3) -> f32 {
+        if self.x == self.y {
+            return self.x;
+        }
+        let (x2, y2, sin2) = (self.x * self.x, self.y * self.y, (w.x * w.x + w.y * w.y).min(1.0));
+        (x2 * w.x * w.x + y2 * w.y * w.y + 0.5 * (x2 + y2) * (1.0 - sin2)).sqrt()
+    }
+
     /// s(w), see above.
     #[inline]
     pub fn stretch(self, w: Vec3) -> f32 {

@@ -1,6 +1,9 @@
 //! The lobes that a [`Bsdf`](super::Bsdf) is made of: a closed set, each in a file of its own.
 
-use super::{BsdfSample, Conductor, Dielectric, Lambert, Scatter, ThinDielectric};
+use super::{
+    BsdfSample, Conductor, Dielectric, DiffuseTransmission, Lambert, OrenNayar, PhongHighlight, Scatter, Sheen,
+    ThinDielectric, Whitted,
+};
 use arrayvec::ArrayVec;
 use juggler_math::{Rgb, Vec2, Vec3};
 
@@ -18,20 +21,80 @@ pub enum Lobe {
     Dielectric(Dielectric),
     /// A pane of glass.
     Thin(ThinDielectric),
+    /// Rough matt.
+    OrenNayar(OrenNayar),
+    /// Matt on both sides.
+    DiffuseTransmission(DiffuseTransmission),
+    /// Cloth.
+    Sheen(Sheen),
+    /// A classic highlight.
+    Highlight(PhongHighlight),
+    /// A classic mirror and window.
+    Whitted(Whitted),
 }
 
-macro_rules! from {
-    ($($kind:ident($lobe:ty)),*) => {$(
-        impl From<$lobe> for Lobe {
-            #[inline]
-            fn from(lobe: $lobe) -> Self {
-                Self::$kind(lobe)
-            }
-        }
-    )*};
+impl From<Lambert> for Lobe {
+    #[inline]
+    fn from(lobe: Lambert) -> Self {
+        Self::Lambert(lobe)
+    }
 }
 
-from!(Lambert(Lambert), Conductor(Conductor), Dielectric(Dielectric), Thin(ThinDielectric));
+impl From<Conductor> for Lobe {
+    #[inline]
+    fn from(lobe: Conductor) -> Self {
+        Self::Conductor(lobe)
+    }
+}
+
+impl From<Dielectric> for Lobe {
+    #[inline]
+    fn from(lobe: Dielectric) -> Self {
+        Self::Dielectric(lobe)
+    }
+}
+
+impl From<ThinDielectric> for Lobe {
+    #[inline]
+    fn from(lobe: ThinDielectric) -> Self {
+        Self::Thin(lobe)
+    }
+}
+
+impl From<OrenNayar> for Lobe {
+    #[inline]
+    fn from(lobe: OrenNayar) -> Self {
+        Self::OrenNayar(lobe)
+    }
+}
+
+impl From<DiffuseTransmission> for Lobe {
+    #[inline]
+    fn from(lobe: DiffuseTransmission) -> Self {
+        Self::DiffuseTransmission(lobe)
+    }
+}
+
+impl From<Sheen> for Lobe {
+    #[inline]
+    fn from(lobe: Sheen) -> Self {
+        Self::Sheen(lobe)
+    }
+}
+
+impl From<PhongHighlight> for Lobe {
+    #[inline]
+    fn from(lobe: PhongHighlight) -> Self {
+        Self::Highlight(lobe)
+    }
+}
+
+impl From<Whitted> for Lobe {
+    #[inline]
+    fn from(lobe: Whitted) -> Self {
+        Self::Whitted(lobe)
+    }
+}
 
 impl Lobe {
     /// f |cos θi| and the density of [`Lobe::sample`] per steradian, both without deltas.
@@ -42,6 +105,11 @@ impl Lobe {
             Self::Conductor(lobe) => lobe.eval_pdf(wo, wi),
             Self::Dielectric(lobe) => lobe.eval_pdf(wo, wi),
             Self::Thin(lobe) => lobe.eval_pdf(wo, wi),
+            Self::OrenNayar(lobe) => lobe.eval_pdf(wo, wi),
+            Self::DiffuseTransmission(lobe) => lobe.eval_pdf(wo, wi),
+            Self::Sheen(lobe) => lobe.eval_pdf(wo, wi),
+            Self::Highlight(lobe) => lobe.eval_pdf(wo, wi),
+            Self::Whitted(_) => (Rgb::BLACK, 0.0),
         }
     }
 
@@ -53,6 +121,11 @@ impl Lobe {
             Self::Conductor(lobe) => lobe.sample(wo, u),
             Self::Dielectric(lobe) => lobe.sample(wo, u),
             Self::Thin(lobe) => lobe.sample(wo, u),
+            Self::OrenNayar(lobe) => lobe.sample(wo, u),
+            Self::DiffuseTransmission(lobe) => lobe.sample(wo, u),
+            Self::Sheen(lobe) => lobe.sample(wo, u),
+            Self::Highlight(lobe) => lobe.sample(wo, u),
+            Self::Whitted(lobe) => lobe.sample(wo, u),
         }
     }
 
@@ -70,6 +143,11 @@ impl Lobe {
             Self::Conductor(lobe) => lobe.albedo(wo),
             Self::Dielectric(lobe) => lobe.albedo(wo),
             Self::Thin(lobe) => lobe.albedo(wo),
+            Self::OrenNayar(lobe) => lobe.albedo(wo),
+            Self::DiffuseTransmission(lobe) => lobe.albedo(wo),
+            Self::Sheen(lobe) => lobe.albedo(wo),
+            Self::Highlight(lobe) => lobe.albedo(wo),
+            Self::Whitted(lobe) => lobe.albedo(wo),
         }
     }
 
@@ -77,11 +155,19 @@ impl Lobe {
     #[inline]
     pub fn is_specular(&self) -> bool {
         match self {
-            Self::Lambert(_) => false,
+            Self::Lambert(_) | Self::OrenNayar(_) | Self::DiffuseTransmission(_) => false,
+            Self::Sheen(_) | Self::Highlight(_) => false,
+            Self::Whitted(_) => true,
             Self::Conductor(lobe) => lobe.is_smooth(),
             Self::Dielectric(lobe) => lobe.is_smooth(),
             Self::Thin(lobe) => lobe.is_smooth(),
         }
+    }
+
+    /// Whether it spreads light so evenly that what lies over it shows in `wi` as much as in `wo`.
+    #[inline]
+    pub fn is_matt(&self) -> bool {
+        matches!(self, Self::Lambert(_) | Self::OrenNayar(_) | Self::DiffuseTransmission(_))
     }
 
     /// Whether there is any delta.
@@ -93,7 +179,9 @@ impl Lobe {
     /// Every delta with its full weight.
     pub fn deltas(&self, wo: Vec3) -> Deltas {
         match self {
-            Self::Lambert(_) => Deltas::new(),
+            Self::Lambert(_) | Self::OrenNayar(_) | Self::DiffuseTransmission(_) => Deltas::new(),
+            Self::Sheen(_) | Self::Highlight(_) => Deltas::new(),
+            Self::Whitted(lobe) => lobe.deltas(wo),
             Self::Conductor(lobe) => lobe.deltas(wo),
             Self::Dielectric(lobe) => lobe.deltas(wo),
             Self::Thin(lobe) => lobe.deltas(wo),

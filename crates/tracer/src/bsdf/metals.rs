@@ -3,7 +3,7 @@
 //!
 //! Three wavelengths stand for three bands, so colours are near those of a spectral renderer, not equal to them.
 
-use super::fresnel::Fresnel;
+use super::Fresnel;
 use juggler_math::Rgb;
 
 /// A metal's index of refraction: real part η and extinction k, per channel.

@@ -1,6 +1,7 @@
-//! The classic model at one point: numbers, no names and no textures.
+//! The classic model at one point, and what comes closest to it of what a path tracer can follow.
 
-use juggler_math::Rgb;
+use super::{Bsdf, Conductor, Dielectric, Fresnel, Lambert, PhongHighlight, Whitted};
+use juggler_math::{Rgb, Vec2, fun};
 
 /// How a highlight is weighted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
@@ -39,6 +40,8 @@ pub struct Phong {
     pub occlusion: f32,
     /// Weight of `n · l`; a factor 1/π, where wanted, is already in it.
     pub diffuse: Rgb,
+    /// The albedo over `diffuse`: 1, or π where `diffuse` carries a factor 1/π.
+    pub albedo_scale: f32,
     /// Weight of the highlight.
     pub specular: Rgb,
     /// Exponent of the highlight.
@@ -69,6 +72,7 @@ impl Phong {
         ambient: Rgb::BLACK,
         occlusion: 0.0,
         diffuse: Rgb::BLACK,
+        albedo_scale: 1.0,
         specular: Rgb::BLACK,
         shininess: 1.0,
         highlight: Highlight::Phong,
@@ -80,4 +84,55 @@ impl Phong {
         ior: 1.0,
         fresnel: false,
     };
+
+    /// The same surface for light that is followed path by path: `diffuse` (times `albedo_scale`) is Lambert's albedo,
+    /// the highlight a lobe of the same exponent that gives back `specular` head on, mirror and transparency are deltas.
+    /// A glossy mirror is a rough one of about the same spread, glossy or blurry glass with `fresnel` rough glass; blurry
+    /// windows without are sharp. z is the side of the viewer, who is
+    /// `outside` where that is the side of the true normal.
+    ///
+    /// The classic model may give back more light than there was; then the whole is dimmed so that no channel's albedo
+    /// is above 1.
+    pub fn bsdf(&self, outside: bool) -> Bsdf {
+        let albedo = self.diffuse * self.albedo_scale;
+        let rays = self.mirror + self.transparency;
+        let rays = if self.fresnel { larger(self.mirror, self.transparency) } else { rays };
+        let weight = 1.0 / (albedo + self.specular + rays).max_channel().max(1.0);
+        let spread = self.glossy.half_angle_radians.max(self.blurry.half_angle_radians);
+        let mut whitted = Whitted {
+            mirror: self.mirror,
+            transparency: self.transparency,
+            ior: if outside { self.ior } else { 1.0 / self.ior },
+            fresnel: self.fresnel,
+        };
+        let mut bsdf = Bsdf::new();
+        if !albedo.is_black() {
+            bsdf.push_scaled(Lambert { albedo }, weight);
+        }
+        if !self.specular.is_black() {
+            let exponent = self.shininess.clamp(0.0, 1e5);
+            bsdf.push_scaled(PhongHighlight { specular: self.specular, exponent }, weight);
+        }
+        // Normals turn by half of what mirrored rays do; the mean turn of an even cone is 2/3 of its half angle.
+        let alpha = |half_angle: f32| Vec2::splat(fun::tan(half_angle.min(1.5) / 3.0));
+        if spread > 0.0 && self.fresnel {
+            let glass = Dielectric::new(whitted.ior, alpha(spread)).tinted(self.mirror, self.transparency);
+            bsdf.push_scaled(glass, weight);
+            return bsdf;
+        }
+        if self.glossy.half_angle_radians > 0.0 && !self.mirror.is_black() {
+            let fresnel = Fresnel::Schlick { f0: self.mirror, f90: self.mirror };
+            bsdf.push_scaled(Conductor::new(fresnel, alpha(self.glossy.half_angle_radians)), weight);
+            whitted.mirror = Rgb::BLACK;
+        }
+        if !(whitted.mirror.is_black() && whitted.transparency.is_black()) {
+            bsdf.push_scaled(whitted, weight);
+        }
+        bsdf
+    }
+}
+
+/// The larger of each channel.
+fn larger(a: Rgb, b: Rgb) -> Rgb {
+    Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b))
 }

@@ -7,7 +7,7 @@
 
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta, one_of_two, sum};
-use super::{BsdfSample, Scatter, choose, energy, fresnel};
+use super::{BsdfSample, Film, Scatter, choose, energy, fresnel};
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
 
@@ -20,6 +20,8 @@ pub struct ThinDielectric {
     pub reflection: Rgb,
     /// Factor on light that goes through, 0 to 1.
     pub transmission: Rgb,
+    /// A thin film on it, and how much of it that covers.
+    pub film: Option<(Film, f32)>,
     compensated: bool,
 }
 
@@ -28,7 +30,8 @@ impl ThinDielectric {
     #[inline]
     pub fn new(ior: f32, alpha: Vec2) -> Self {
         let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
-        Self { ggx: Ggx::new(alpha), ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, compensated: false }
+        let (reflection, transmission) = (Rgb::WHITE, Rgb::WHITE);
+        Self { ggx: Ggx::new(alpha), ior, reflection, transmission, film: None, compensated: false }
     }
 
     /// With all scattering among its microfacets.
@@ -51,20 +54,23 @@ impl ThinDielectric {
 
     /// R at an angle of cosine `cos`.
     #[inline]
-    fn share(&self, cos: f32) -> f32 {
-        if self.ior == 1.0 {
-            return 0.0;
-        }
-        let once = fresnel::dielectric(cos, self.ior);
-        2.0 * once / (1.0 + once)
+    fn share(&self, cos: f32) -> Rgb {
+        let once = if self.ior == 1.0 { 0.0 } else { fresnel::dielectric(cos, self.ior) };
+        let once = self.film.map_or(Rgb::splat(once), |(film, amount)| Rgb::splat(once).lerp(film.at(cos), amount));
+        once.map(|once| 2.0 * once / (1.0 + once))
     }
 
     /// Probability of mirrored light.
     #[inline]
     fn mirrored(&self, cos: f32) -> f32 {
-        let share = energy::mirrored_share(cos, self.ggx.mean_alpha(), |cos| self.share(cos));
+        let share = energy::mirrored_share(cos, self.ggx.mean_alpha(), |cos| sum(self.share(cos)) / 3.0);
         let (r, t) = (share * sum(self.reflection), (1.0 - share) * sum(self.transmission));
         if r + t > 0.0 { r / (r + t) } else { 0.5 }
+    }
+
+    /// What single scattering loses of light along `w`.
+    fn lost(&self, w: Vec3) -> f32 {
+        energy::mirror_loss(w.z.abs(), self.ggx.alpha_towards(w))
     }
 
     /// How much of the light that is scattered more than once is mirrored.
@@ -85,14 +91,14 @@ impl ThinDielectric {
         let (share, probability) = (self.share(facing.cos), self.mirrored(o.z));
         let (color, average) =
             if is_mirrored { (self.reflection, self.average()) } else { (self.transmission, 1.0 - self.average()) };
-        let (share, probability) = if is_mirrored { (share, probability) } else { (1.0 - share, 1.0 - probability) };
+        let (share, probability) =
+            if is_mirrored { (share, probability) } else { (Rgb::WHITE - share, 1.0 - probability) };
         let (mut value, mut pdf) = (share * facing.value, probability * facing.pdf);
         if self.compensated {
-            let alpha = self.ggx.mean_alpha();
-            let lost = energy::mirror_loss(o.z, alpha);
-            let out = energy::mirror_loss(i.z, alpha) / energy::mirror_loss_average(alpha);
+            let lost = self.lost(o);
+            let out = self.lost(i) / energy::mirror_loss_average(self.ggx.mean_alpha());
             let cosine = i.z * FRAC_1_PI * average * lost;
-            value += cosine * out;
+            value += Rgb::splat(cosine * out);
             pdf = pdf * (1.0 - lost) + cosine;
         }
         (color * value, pdf)
@@ -116,7 +122,7 @@ impl ThinDielectric {
     }
 
     fn pick(&self, wo: Vec3, u: Vec2) -> Option<(Vec3, Scatter)> {
-        let lost = if self.compensated { energy::mirror_loss(wo.z, self.ggx.mean_alpha()) } else { 0.0 };
+        let lost = if self.compensated { self.lost(wo) } else { 0.0 };
         let (is_multiple, x) = choose(u.x, lost);
         let probability = if is_multiple { self.average() } else { self.mirrored(wo.z) };
         let (is_mirrored, x) = choose(x, probability);
@@ -132,7 +138,7 @@ impl ThinDielectric {
     fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
         let share = self.share(wo.z.abs());
         let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
-        [mirrored, delta(-wo, self.transmission * (1.0 - share), 1.0)]
+        [mirrored, delta(-wo, self.transmission * (Rgb::WHITE - share), 1.0)]
     }
 
     /// What is mirrored and what goes through, each in its colour.
@@ -140,13 +146,13 @@ impl ThinDielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (cos, alpha) = (wo.z.abs(), self.ggx.mean_alpha());
+        let (cos, alpha) = (wo.z.abs(), self.ggx.alpha_towards(wo));
         if self.is_smooth() {
             let share = self.share(cos);
-            return self.reflection * share + self.transmission * (1.0 - share);
+            return self.reflection * share + self.transmission * (Rgb::WHITE - share);
         }
         let lost = energy::mirror_loss(cos, alpha);
-        let share = energy::mirrored_share(cos, alpha, |cos| self.share(cos));
+        let share = energy::mirrored_share(cos, alpha, |cos| sum(self.share(cos)) / 3.0);
         let once = (self.reflection * share + self.transmission * (1.0 - share)) * (1.0 - lost);
         if !self.compensated {
             return once;

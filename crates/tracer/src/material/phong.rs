@@ -80,6 +80,15 @@ pub enum DiffuseNormalization {
     InversePi,
 }
 
+impl DiffuseNormalization {
+    fn factor(self) -> f32 {
+        match self {
+            Self::One => 1.0,
+            Self::InversePi => std::f32::consts::FRAC_1_PI,
+        }
+    }
+}
+
 /// Spreads a ray into a bundle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
@@ -154,6 +163,7 @@ impl Material for Phong {
         let textures = resolver.textures();
         let slots = self.slots(textures)?;
         let mut fixed = PhongLobe {
+            albedo_scale: 1.0 / self.diffuse_normalization.factor(),
             occlusion: self.occlusion,
             shininess: self.shininess,
             highlight: self.highlight,
@@ -200,15 +210,11 @@ impl Phong {
     }
 
     fn slots(&self, textures: &TextureTable) -> Result<Slots, MaterialError> {
-        let normalization = match self.diffuse_normalization {
-            DiffuseNormalization::One => 1.0,
-            DiffuseNormalization::InversePi => std::f32::consts::FRAC_1_PI,
-        };
         Ok(Slots {
             emission: textures.resolve("emission", &self.emission)?,
             ambient: textures.resolve("ambient", &self.ambient)?,
             diffuse: textures.resolve("diffuse", &self.diffuse)?,
-            diffuse_weight: self.diffuse_weight * normalization,
+            diffuse_weight: self.diffuse_weight * self.diffuse_normalization.factor(),
             specular: textures.resolve("specular", &self.specular)?,
             highlight_color: textures.resolve("highlight_color", &self.highlight_color)?,
             reflection: textures.resolve("reflection", &self.reflection)?,

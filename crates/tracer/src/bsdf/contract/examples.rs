@@ -1,7 +1,10 @@
 //! The list of examples.
 
 use crate::bsdf::metals::Metal;
-use crate::bsdf::{Bsdf, Conductor, Dielectric, Fresnel, Lambert, ThinDielectric};
+use crate::bsdf::{
+    Bsdf, Conductor, Cone, Dielectric, DiffuseTransmission, Film, Fresnel, Lambert, OrenNayar, Phong, Plastic, Sheen,
+    ThinDielectric,
+};
 use juggler_math::{Rgb, Vec2};
 
 /// One of the list.
@@ -17,19 +20,19 @@ pub(super) struct Example {
 }
 
 impl Example {
-    fn new(name: impl Into<String>, bsdf: impl Into<Bsdf>) -> Self {
+    pub fn new(name: impl Into<String>, bsdf: impl Into<Bsdf>) -> Self {
         Self { name: name.into(), bsdf: bsdf.into(), both_sides: false, white_within: 0.0, is_broad: true }
     }
 
-    fn both_sides(self) -> Self {
+    pub fn both_sides(self) -> Self {
         Self { both_sides: true, ..self }
     }
 
-    fn white(self, within: f32) -> Self {
+    pub fn white(self, within: f32) -> Self {
         Self { white_within: within, ..self }
     }
 
-    fn narrow(self) -> Self {
+    pub fn narrow(self) -> Self {
         Self { is_broad: false, ..self }
     }
 }
@@ -51,12 +54,17 @@ pub(super) fn examples() -> Vec<Example> {
         all.extend(dielectrics(Vec2::new(x, y)).into_iter().map(rough));
     }
     all.extend(sums());
+    all.extend(matt());
+    all.extend(plastics());
+    all.extend(films());
+    all.extend(classics());
+    all.extend(super::principled::examples());
     all
 }
 
 /// How far a compensated lobe may miss white: brushed ones are compensated by one alpha for both axes.
 fn within(alpha: Vec2) -> f32 {
-    if alpha.x == alpha.y { 0.02 } else { 0.12 }
+    if alpha.x == alpha.y { 0.02 } else { 0.15 }
 }
 
 fn conductors(alpha: Vec2) -> Vec<Example> {
@@ -75,7 +83,10 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
     let (cyan, pink) = (Rgb::new(0.5, 0.9, 0.9), Rgb::new(0.9, 0.6, 0.8));
     let tinted = Dielectric::new(1.5, alpha).tinted(pink, cyan);
     let mut all = vec![Example::new(format!("tinted glass {alpha}"), tinted)];
-    for ior in [0.5, 1.0 / 1.33, 1.0, 1.01, 1.5, 2.4, 4.0] {
+    let all_iors = [0.5, 1.0 / 1.33, 1.0, 1.01, 1.5, 2.4, 4.0];
+    // All of them at three, from both sides anyway.
+    let iors = if alpha.x == alpha.y && (alpha.x == 0.0 || alpha.x > 0.2) { &all_iors[..] } else { &all_iors[3..5] };
+    for ior in iors.iter().copied() {
         let narrow = |example: Example| if ior == 1.01 { example.narrow() } else { example };
         let compensated = Dielectric::compensated(ior, alpha);
         all.push(narrow(Example::new(format!("dielectric {ior} {alpha}"), Dielectric::new(ior, alpha))));
@@ -99,4 +110,73 @@ fn sums() -> Vec<Example> {
     waxed.push_scaled(Conductor::new(Fresnel::WHITE, Vec2::ZERO), 0.1);
     waxed.push_scaled(ThinDielectric::new(1.3, Vec2::ZERO), 0.3);
     vec![Example::new("patchy", patchy).both_sides(), Example::new("waxed", waxed).both_sides()]
+}
+
+fn matt() -> Vec<Example> {
+    let mut all = vec![];
+    for roughness in [0.0, 0.3, 1.0] {
+        let orange = OrenNayar::new(Rgb::new(0.9, 0.5, 0.1), roughness);
+        all.push(Example::new(format!("rough matt {roughness}"), orange));
+        all.push(Example::new(format!("white matt {roughness}"), OrenNayar::new(Rgb::WHITE, roughness)).white(0.01));
+    }
+    let leaf = DiffuseTransmission { reflectance: Rgb::new(0.1, 0.4, 0.1), transmittance: Rgb::new(0.2, 0.6, 0.0) };
+    let paper = DiffuseTransmission { reflectance: Rgb::splat(0.6), transmittance: Rgb::splat(0.4) };
+    all.push(Example::new("leaf", leaf).both_sides());
+    all.push(Example::new("white paper", paper).both_sides().white(1e-5));
+    for alpha in [0.0, 0.1, 0.4, 1.0] {
+        all.push(Example::new(format!("sheen {alpha}"), Sheen::new(Rgb::new(0.9, 0.5, 1.0), alpha)));
+    }
+    all
+}
+
+fn plastics() -> Vec<Example> {
+    let red = Plastic { albedo: Rgb::new(0.8, 0.2, 0.1), ..Plastic::default() };
+    let white = Plastic { albedo: Rgb::WHITE, ..Plastic::default() };
+    let mut all = vec![Example::new("tinted coat", Plastic { reflection: Rgb::new(1.0, 0.5, 0.2), ..red })];
+    for alpha in [0.0, 0.3, 1.0] {
+        let alpha = Vec2::splat(alpha);
+        all.push(Example::new(format!("plastic {alpha}"), Plastic { alpha, ..red }));
+        all.push(Example::new(format!("nonlinear plastic {alpha}"), Plastic { alpha, nonlinear: true, ..red }));
+        all.push(Example::new(format!("white plastic {alpha}"), Plastic { alpha, ..white }).white(0.01));
+        let rough = Plastic { alpha, nonlinear: true, body_roughness: 0.7, ior: 2.0, ..white };
+        all.push(Example::new(format!("white rough plastic {alpha}"), rough).white(0.02));
+    }
+    all
+}
+
+fn films() -> Vec<Example> {
+    let film = Film { f0: Rgb::splat(0.04), ior: 1.3, thickness_nm: 400.0 };
+    let soap = Fresnel::Film { film, amount: 1.0 };
+    let steel = Fresnel::Film { film: Film { f0: Rgb::new(0.56, 0.57, 0.58), ior: 2.0, ..film }, amount: 0.7 };
+    let smooth = Example::new("soap", Conductor::new(soap, Vec2::ZERO));
+    let rough = [0.2, 0.7]
+        .map(|alpha| Example::new(format!("steel {alpha}"), Conductor::compensated(steel, Vec2::splat(alpha))));
+    rough.into_iter().chain([smooth]).collect()
+}
+
+fn classics() -> Vec<Example> {
+    let shiny = Phong { diffuse: Rgb::new(0.7, 0.1, 0.1), specular: Rgb::splat(0.3), shininess: 20.0, ..Phong::BLACK };
+    let overbright = Phong { mirror: Rgb::splat(0.5), specular: Rgb::WHITE, shininess: 3.0, ..shiny };
+    let glass = Phong {
+        mirror: Rgb::WHITE,
+        transparency: Rgb::new(0.9, 1.0, 0.9),
+        ior: 1.5,
+        fresnel: true,
+        specular: Rgb::splat(0.5),
+        shininess: 100.0,
+        ..Phong::BLACK
+    };
+    let window =
+        Phong { fresnel: false, mirror: Rgb::splat(0.2), transparency: Rgb::splat(0.8), specular: Rgb::BLACK, ..glass };
+    let glossy = Phong { mirror: Rgb::splat(0.9), glossy: Cone { half_angle_radians: 0.9, rays: 1 }, ..Phong::BLACK };
+    vec![
+        Example::new("shiny", shiny.bsdf(true)),
+        Example::new("matt highlight", Phong { shininess: 0.0, ..shiny }.bsdf(true)),
+        Example::new("overbright", overbright.bsdf(true)),
+        Example::new("classic glass", glass.bsdf(true)),
+        Example::new("classic glass from within", glass.bsdf(false)),
+        Example::new("classic window", window.bsdf(true)).both_sides().white(1e-4),
+        Example::new("glossy", glossy.bsdf(true)),
+        Example::new("glossy glass", Phong { glossy: glossy.glossy, ..glass }.bsdf(false)),
+    ]
 }

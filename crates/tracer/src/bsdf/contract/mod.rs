@@ -3,6 +3,7 @@
 mod energy;
 mod examples;
 mod numbers;
+mod principled;
 mod sampling;
 
 use crate::bsdf::{Bsdf, BsdfSample};

@@ -42,7 +42,7 @@ fn everything_is_finite_and_not_negative() {
 #[test]
 fn opaque_lobes_are_black_from_below() {
     let mut random = Random::new(96);
-    for Example { name, bsdf, .. } in examples().into_iter().filter(|e| !e.both_sides) {
+    for Example { name, bsdf, .. } in examples().into_iter().filter(|e| !e.both_sides && !e.name.contains("glass")) {
         for _ in 0..100 {
             let wo = -random.unit_vector().abs();
             assert!(bsdf.sample(wo, random.vec2()).is_none() && bsdf.albedo(wo).is_black(), "{name}");

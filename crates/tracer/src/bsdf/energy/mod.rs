@@ -9,7 +9,9 @@
 
 mod border_lost;
 mod border_mirrored;
+mod mirror_grazing;
 mod mirror_lost;
+mod sheen_albedo;
 
 #[cfg(test)]
 mod tests;
@@ -17,7 +19,9 @@ mod tests;
 use super::fresnel;
 use border_lost::{LOST, LOST_MEAN};
 use border_mirrored::{MIRRORED, MIRRORED_MEAN};
+use mirror_grazing::MIRROR_GRAZING;
 use mirror_lost::{MIRROR_LOST, MIRROR_LOST_MEAN};
+use sheen_albedo::SHEEN;
 
 /// Entries along the cosine's coordinate, from 0 to 1.
 const COS: usize = 16;
@@ -70,6 +74,27 @@ fn coordinate(cos: f32, alpha: f32) -> f32 {
 #[inline]
 pub fn mirror_loss(cos: f32, alpha: f32) -> f32 {
     across(&MIRROR_LOST, place(alpha.sqrt(), ALPHA), place(coordinate(cos, alpha), COS))
+}
+
+/// What a rough mirror gives back of light at an angle of cosine `cos` were its microfacets' share (1 - cos θ)⁵: what
+/// Schlick's curve adds at grazing angles, in single scattering.
+#[inline]
+pub fn mirror_grazing(cos: f32, alpha: f32) -> f32 {
+    let more = across(&MIRROR_GRAZING, place(alpha.sqrt(), ALPHA), place(cos.sqrt(), COS));
+    (plain_grazing(cos, alpha) + more).clamp(0.0, 1.0)
+}
+
+/// The part of polished mirrors.
+#[inline]
+fn plain_grazing(cos: f32, alpha: f32) -> f32 {
+    let m = 1.0 - cos;
+    polish(alpha) * m * m * m * m * m * (1.0 - mirror_loss(cos, alpha))
+}
+
+/// What [`Sheen`](super::Sheen) of white fibres gives back of light at an angle of cosine `cos`.
+#[inline]
+pub fn sheen(cos: f32, alpha: f32) -> f32 {
+    across(&SHEEN, place(alpha.sqrt(), ALPHA), place(cos.sqrt(), COS))
 }
 
 /// The mean of [`mirror_loss`] over all directions, each weighted by its cosine.

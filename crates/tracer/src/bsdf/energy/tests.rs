@@ -2,6 +2,7 @@
 //! `JUGGLER_BLESS=1 cargo test -p juggler-tracer tables_are_what_lobes_integrate_to && cargo fmt`.
 
 use super::*;
+use crate::bsdf::Sheen;
 use crate::bsdf::fresnel;
 use crate::bsdf::ggx::Ggx;
 use juggler_math::testing::close;
@@ -26,12 +27,7 @@ fn integrate_scaled(cos: f32, alpha: f32, ior: Option<f32>, count: u32) -> (f64,
     };
     let (mut mirrored, mut refracted) = (0.0, 0.0);
     for i in 0..count {
-        // The plastic number's sequence: even in both dimensions.
-        let u = Vec2::new(
-            (0.5 + f64::from(i) * 0.754_877_666_246_692_8).fract() as f32,
-            (0.5 + f64::from(i) * 0.569_840_290_998_053_3).fract() as f32,
-        );
-        let (m, _) = ggx.sample(wo, so, u);
+        let (m, _) = ggx.sample(wo, so, even(i));
         let share =
             ior.map_or(1.0, |ior| if ior == 1.0 { 0.0 } else { f64::from(fresnel::dielectric(wo.dot(m), ior)) });
         let up = fresnel::reflect(wo, m);
@@ -44,6 +40,25 @@ fn integrate_scaled(cos: f32, alpha: f32, ior: Option<f32>, count: u32) -> (f64,
     }
     let count = f64::from(count);
     (mirrored / count, (1.0 - (mirrored + refracted) / count).clamp(0.0, 1.0))
+}
+
+/// What a rough mirror gives back where its microfacets mirror `share` of light at a cosine.
+fn mirrored_with(cos: f32, alpha: f32, share: impl Fn(f32) -> f32, count: u32) -> f64 {
+    let ggx = Ggx::isotropic(alpha.max(Ggx::SMOOTH));
+    let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let one = |i| {
+        let found = ggx.sample_mirror(wo, even(i));
+        found.map_or(0.0, |(_, facing)| f64::from(share(facing.cos) * facing.value / facing.pdf))
+    };
+    (0..count).map(one).sum::<f64>() / f64::from(count)
+}
+
+/// The plastic number's sequence: even in both dimensions.
+fn even(i: u32) -> Vec2 {
+    Vec2::new(
+        (0.5 + f64::from(i) * 0.754_877_666_246_692_8).fract() as f32,
+        (0.5 + f64::from(i) * 0.569_840_290_998_053_3).fract() as f32,
+    )
 }
 
 /// The argument of entry `i` of `count` whose square root is even.
@@ -93,6 +108,32 @@ fn mirror_row(alpha: usize, count: u32) -> Vec<i16> {
     (0..COS).map(|c| stored(lost(c))).collect()
 }
 
+/// Corrections of what Schlick's curve adds.
+fn grazing_row(alpha: usize, count: u32) -> Vec<i16> {
+    let alpha = entry(alpha, ALPHA);
+    let share = |cos: f32| (1.0 - cos).powi(5);
+    let at = |cos: f32| mirrored_with(cos.max(1e-4), alpha, share, count) - f64::from(plain_grazing(cos, alpha));
+    (0..COS).map(|c| stored(at(entry(c, COS)))).collect()
+}
+
+/// What sheen gives back, by summing over directions.
+fn sheen_row(alpha: usize, side: u32) -> Vec<i16> {
+    let sheen = Sheen::new(juggler_math::Rgb::WHITE, entry(alpha, ALPHA));
+    let at = |cos: f32| {
+        let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos.max(1e-4));
+        let one = |k: u32| {
+            // Even in √cos, where fibres shine.
+            let (s, turn) = ((k % side) as f32 + 0.5, (k / side) as f32 + 0.5);
+            let (s, turn) = (s / side as f32, turn / side as f32 * 0.5);
+            let (z, (sin, turn)) = (s * s, juggler_math::fun::sin_cos_turns(turn));
+            let radius = (1.0 - z * z).sqrt();
+            f64::from(sheen.eval_pdf(wo, Vec3::new(radius * turn, radius * sin, z)).0.r * 2.0 * s)
+        };
+        (0..side * side).map(one).sum::<f64>() / f64::from(side * side) * std::f64::consts::TAU
+    };
+    (0..COS).map(|c| stored(at(entry(c, COS)))).collect()
+}
+
 /// Corrections of a border's [mirrored, lost] light.
 fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> [Vec<i16>; 2] {
     let (ior, alpha) = (ior_of(side, ior), entry(alpha, ALPHA_CLEAR));
@@ -116,21 +157,13 @@ fn clear_mean(table: &[Vec<Vec<Vec<i16>>>], side: usize, i: usize, a: usize, k: 
     })
 }
 
-/// One file: its name, what it holds, the kinds of a table and of its means, both as text.
-fn write(name: &str, what: &str, kinds: [&str; 2], tables: [String; 2]) {
-    let constant = match name {
-        "mirror_lost" => "MIRROR_LOST",
-        "border_lost" => "LOST",
-        _ => "MIRRORED",
-    };
-    let [table, means] = tables;
-    let uses = if name == "mirror_lost" { "{ALPHA, Plane}" } else { "{Means, Sides}" };
-    let text = format!(
-        "//! {what} Made by `tests.rs`, which says how: do not edit.\n\nuse super::{uses};\n\n\
-         /// {what}\npub(super) const {constant}: {} = {table};\n\n\
-         /// Its means.\npub(super) const {constant}_MEAN: {} = {means};\n",
-        kinds[0], kinds[1]
-    );
+/// One file: its name, what it holds, and each table's name, kind and text.
+fn write(name: &str, what: &str, uses: &str, tables: &[(&str, &str, String)]) {
+    let mut text = format!("//! {what} Made by `tests.rs`, which says how: do not edit.\n\nuse super::{uses};\n");
+    for (constant, kind, table) in tables {
+        let which = if constant.ends_with("_MEAN") { "Its means." } else { what };
+        text += &format!("\n/// {which}\npub(super) const {constant}: {kind} = {table};\n");
+    }
     let path = format!("{}/src/bsdf/energy/{name}.rs", env!("CARGO_MANIFEST_DIR"));
     std::fs::write(path, text).unwrap();
 }
@@ -139,14 +172,24 @@ fn write(name: &str, what: &str, kinds: [&str; 2], tables: [String; 2]) {
 fn write_tables(count: u32) {
     let mirror: Vec<_> = (0..ALPHA).map(|alpha| mirror_row(alpha, count)).collect();
     let means: Vec<_> = mirror.iter().enumerate().map(|(i, row)| mirror_mean(entry(i, ALPHA), row)).collect();
-    let kinds = ["Plane<ALPHA>", "[i16; ALPHA]"];
-    write("mirror_lost", "What a rough mirror loses.", kinds, [format!("{mirror:?}"), format!("{means:?}")]);
+    let tables = [
+        ("MIRROR_LOST", "Plane<ALPHA>", format!("{mirror:?}")),
+        ("MIRROR_LOST_MEAN", "[i16; ALPHA]", format!("{means:?}")),
+    ];
+    write("mirror_lost", "What a rough mirror loses.", "{ALPHA, Plane}", &tables);
+    let grazing: Vec<_> = (0..ALPHA).map(|alpha| grazing_row(alpha, count)).collect();
+    let tables = [("MIRROR_GRAZING", "Plane<ALPHA>", format!("{grazing:?}"))];
+    write("mirror_grazing", "What Schlick's curve adds on a rough mirror.", "{ALPHA, Plane}", &tables);
+    let sheen: Vec<_> = (0..ALPHA).map(|alpha| sheen_row(alpha, 128)).collect();
+    let tables = [("SHEEN", "Plane<ALPHA>", format!("{sheen:?}"))];
+    write("sheen_albedo", "What fibres give back.", "{ALPHA, Plane}", &tables);
     let clear: Vec<Vec<Vec<_>>> = (0..2)
         .map(|side| (0..IOR).map(|i| (0..ALPHA_CLEAR).map(|a| clear_row(side, i, a, count)).collect()).collect())
         .collect();
-    for (k, name, what) in
-        [(0, "border_mirrored", "What a rough border mirrors."), (1, "border_lost", "What a rough border loses.")]
-    {
+    for (k, file, name, what) in [
+        (0, "border_mirrored", "MIRRORED", "What a rough border mirrors."),
+        (1, "border_lost", "LOST", "What a rough border loses."),
+    ] {
         let table: Vec<Vec<Vec<Vec<i16>>>> =
             clear.iter().map(|s| s.iter().map(|i| i.iter().map(|a| a[k].clone()).collect()).collect()).collect();
         let means: Vec<Vec<Vec<i16>>> = (0..2)
@@ -154,8 +197,9 @@ fn write_tables(count: u32) {
                 (0..IOR).map(|i| (0..ALPHA_CLEAR).map(|a| clear_mean(&table, side, i, a, k)).collect()).collect()
             })
             .collect();
-        let kinds = ["Sides", "Means"];
-        write(name, what, kinds, [format!("{table:?}"), format!("{means:?}")]);
+        let mean = format!("{name}_MEAN");
+        let tables = [(name, "Sides", format!("{table:?}")), (mean.as_str(), "Means", format!("{means:?}"))];
+        write(file, what, "{Means, Sides}", &tables);
     }
 }
 
@@ -168,6 +212,8 @@ fn tables_are_what_lobes_integrate_to() {
     for alpha in [0, 5, 10, 15] {
         let row = mirror_row(alpha, 2048);
         assert!(near(&row, &MIRROR_LOST[alpha]), "{alpha}: {row:?}");
+        assert!(near(&grazing_row(alpha, 2048), &MIRROR_GRAZING[alpha]), "{alpha}");
+        assert!(near(&sheen_row(alpha, 64), &SHEEN[alpha]), "{alpha}");
         assert_eq!(mirror_mean(entry(alpha, ALPHA), &MIRROR_LOST[alpha]), MIRROR_LOST_MEAN[alpha]);
     }
     for (side, i, alpha) in [(0, 0, 8), (0, 4, 3), (0, 4, 11), (1, 3, 7), (1, 7, 11), (1, 5, 4)] {

@@ -1,0 +1,55 @@
+//! Examples of the surface that glTF describes.
+
+use super::examples::Example;
+use crate::bsdf::Principled;
+use juggler_math::Rgb;
+
+pub(super) fn examples() -> Vec<Example> {
+    let white = Principled::default();
+    let red = Principled { base_color: Rgb::new(0.8, 0.2, 0.1), ..white };
+    let opaque = [
+        ("plastic", red),
+        ("metal", Principled { metallic: 1.0, ..red }),
+        ("half metal", Principled { metallic: 0.5, clearcoat: 0.5, clearcoat_roughness: 0.6, ..red }),
+        ("varnish", Principled { clearcoat: 1.0, roughness: 0.8, ..red }),
+        ("velvet", Principled { sheen_color: Rgb::new(0.9, 0.9, 1.0), sheen_roughness: 0.6, roughness: 0.9, ..red }),
+        ("beetle", Principled { iridescence: 1.0, clearcoat: 0.7, metallic: 0.3, ..red }),
+        ("brushed", Principled { anisotropy: 0.5, metallic: 0.8, specular_color: Rgb::new(0.5, 1.0, 0.2), ..red }),
+        ("single", Principled { single_scattering: true, roughness: 1.0, metallic: 0.5, ..red }),
+        ("everything on top", Principled { sheen_color: Rgb::WHITE, sheen_roughness: 0.3, clearcoat: 1.0, ..white }),
+    ];
+    let clear = [
+        ("stained", Principled { transmission: 0.7, ..red }),
+        ("bubble", Principled { transmission: 1.0, thin_walled: true, roughness: 0.0, iridescence: 1.0, ..white }),
+        ("frosted bubble", Principled { transmission: 1.0, roughness: 0.6, iridescence: 0.8, ..white }),
+        ("frosted pane", Principled { transmission: 0.8, roughness: 0.7, thin_walled: true, clearcoat: 0.5, ..white }),
+        (
+            "petal",
+            Principled { diffuse_transmission: 0.6, diffuse_transmission_color: Rgb::new(0.9, 0.3, 0.5), ..white },
+        ),
+    ];
+    let mut all: Vec<Example> = vec![];
+    all.extend(opaque.map(|(name, numbers)| Example::new(format!("principled {name}"), numbers.bsdf(1.5))));
+    all.extend(clear.map(|(name, numbers)| Example::new(format!("principled {name}"), numbers.bsdf(1.4)).both_sides()));
+    let whites = [
+        ("matt", Principled { specular: 0.0, ..white }, 1e-4),
+        ("plastic", white, 0.01),
+        ("polished", Principled { roughness: 0.0, ..white }, 0.01),
+        ("rough", Principled { roughness: 1.0, ..white }, 0.01),
+        ("metal", Principled { metallic: 1.0, roughness: 0.8, ..white }, 0.01),
+        ("half metal", Principled { metallic: 0.4, ..white }, 0.01),
+        ("velvet", Principled { sheen_color: Rgb::WHITE, sheen_roughness: 0.7, specular: 0.0, ..white }, 0.02),
+        // What is spread under varnish loses some.
+        ("varnish", Principled { clearcoat: 1.0, ..white }, 0.03),
+        ("varnished metal", Principled { clearcoat: 1.0, metallic: 1.0, ..white }, 0.12),
+    ];
+    let named = |(name, numbers, within): (&str, Principled, f32)| {
+        Example::new(format!("principled white {name}"), numbers.bsdf(1.5)).white(within)
+    };
+    all.extend(whites.map(named));
+    let glass = Principled { transmission: 1.0, ..white };
+    all.push(Example::new("principled white glass", glass.bsdf(1.5)).both_sides().white(0.02));
+    let pane = Principled { thin_walled: true, ..glass };
+    all.push(Example::new("principled white pane", pane.bsdf(1.5)).both_sides().white(0.02));
+    all
+}

@@ -1,0 +1,73 @@
+//! The shine of cloth along its edge: fibres stand upright, their normals gather around the horizon (Estevez and Kulla
+//! 2017, "Production friendly microfacet sheen BRDF"; KHR_materials_sheen of glTF), with the paper's fit of masking.
+//!
+//! D(m) = (2 + 1/α) sin^(1/α) θ / 2π. Directions are picked evenly over the hemisphere. What lies below is dimmed by
+//! [`Sheen::albedo`], which a table holds.
+
+use super::{BsdfSample, Scatter, energy};
+use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
+use std::f32::consts::TAU;
+
+/// A fuzz of fibres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheen {
+    /// Colour of the fibres, 0 to 1.
+    pub color: Rgb,
+    alpha: f32,
+    /// Of the fit of masking for this alpha.
+    fit: [f32; 5],
+}
+
+impl Sheen {
+    /// The smallest alpha: below, the fit gives more light than there is.
+    pub const LEAST: f32 = 0.05;
+
+    /// `alpha`, the square of a material's roughness, is taken into [`Sheen::LEAST`]`..=1`.
+    pub fn new(color: Rgb, alpha: f32) -> Self {
+        const SOFT: [f32; 5] = [21.547_3, 3.829_87, 0.198_23, -1.977_6, -4.320_54];
+        const SHARP: [f32; 5] = [25.324_5, 3.324_35, 0.168_01, -1.273_93, -4.859_67];
+        let alpha = if alpha > Self::LEAST { alpha.min(1.0) } else { Self::LEAST };
+        let t = (1.0 - alpha) * (1.0 - alpha);
+        let mut fit = SOFT;
+        fit.iter_mut().zip(SHARP).for_each(|(soft, sharp)| *soft += (sharp - *soft) * t);
+        Self { color, alpha, fit }
+    }
+
+    /// The logarithm of Λ in the softer half.
+    fn curve(&self, x: f32) -> f32 {
+        let [a, b, c, d, e] = self.fit;
+        a / (1.0 + b * fun::powf(x, c)) + d * x + e
+    }
+
+    /// Smith's Λ.
+    fn lambda(&self, cos: f32) -> f32 {
+        let power = if cos < 0.5 { self.curve(cos) } else { 2.0 * self.curve(0.5) - self.curve(1.0 - cos) };
+        fun::exp(power)
+    }
+
+    /// f |cos θi|, and the density per steradian.
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return (Rgb::BLACK, 0.0);
+        }
+        let m = (wo + wi).normalize_or_zero();
+        let inverse = 1.0 / self.alpha;
+        // sin θ by the square root of its square: to half the power.
+        let sin2 = (m.x * m.x + m.y * m.y).min(1.0);
+        let density = (2.0 + inverse) * fun::powf(sin2, 0.5 * inverse) / TAU;
+        let masked = 1.0 + self.lambda(wo.z) + self.lambda(wi.z);
+        (self.color * (density / (4.0 * wo.z * masked).max(f32::MIN_POSITIVE)), 1.0 / TAU)
+    }
+
+    /// A direction, all equally likely.
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        let wi = warp::uniform_hemisphere(u);
+        let (value, pdf) = self.eval_pdf(wo, wi);
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter: Scatter::Diffuse, ior: 1.0 })
+    }
+
+    /// What comes out again.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen(wo.z, self.alpha) }
+    }
+}

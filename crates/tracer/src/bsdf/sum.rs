@@ -1,0 +1,274 @@
+//! The sum of some lobes, side by side or in layers.
+//!
+//! A layer T dims what was pushed after it, so that both together give no more light than there was. With T(μ) what it
+//! leaves, one minus its albedo, a matt lobe is dimmed by T(μo) T(μi) / T̄ (the mean T̄ over all directions makes a white
+//! one under it white), any other by the smaller of T(μo) and T(μi): for a mirror they are the same, for what is
+//! spread a little light is lost. Both are the same both ways, where glTF's dimming by T(μo) alone is not.
+
+use super::{BsdfSample, Lobe, Scatter};
+use arrayvec::ArrayVec;
+use juggler_math::{Rgb, Vec2, Vec3};
+
+/// Lobes in one [`Bsdf`].
+pub const MAX_LOBES: usize = 6;
+
+/// Deltas in one [`Bsdf`]: a lobe has two at most.
+pub const MAX_DELTAS: usize = 2 * MAX_LOBES;
+
+/// What happens to light at one point of a surface: the sum of some lobes.
+#[derive(Clone, Debug, Default)]
+pub struct Bsdf {
+    lobes: ArrayVec<Weighted, MAX_LOBES>,
+}
+
+/// A lobe and its share.
+#[derive(Clone, Copy, Debug)]
+struct Weighted {
+    weight: f32,
+    /// Of a matt lobe in layers: 1 / T̄.
+    scale: f32,
+    /// How much of what comes below it dims: 0 of what is no layer.
+    cover: f32,
+    lobe: Lobe,
+}
+
+impl Weighted {
+    /// What it leaves to those below of light along `w`.
+    #[inline]
+    fn leaves(&self, w: Vec3) -> f32 {
+        if self.cover == 0.0 || w.z <= 0.0 {
+            return 1.0;
+        }
+        (1.0 - self.cover * self.lobe.albedo(w).max_channel()).max(0.0)
+    }
+
+    /// What layers over it leave, by what they leave along both directions.
+    #[inline]
+    fn dimmed(&self, wo: Vec3, wi: Vec3, left_o: f32, left_i: f32) -> f32 {
+        match (self.lobe.is_matt(), wo.z > 0.0 && wi.z > 0.0) {
+            (false, _) => left_o.min(left_i),
+            (true, true) => left_o * left_i * self.scale,
+            (true, false) => left_o * left_i,
+        }
+    }
+}
+
+impl<L: Into<Lobe>> From<L> for Bsdf {
+    #[inline]
+    fn from(lobe: L) -> Self {
+        let mut bsdf = Self::new();
+        bsdf.push(lobe);
+        bsdf
+    }
+}
+
+impl Bsdf {
+    /// Takes all light and gives none back.
+    pub const BLACK: Self = Self::new();
+
+    /// Without lobes.
+    #[inline]
+    pub const fn new() -> Self {
+        Self { lobes: ArrayVec::new_const() }
+    }
+
+    /// Adds a lobe. Who adds several side by side sees to it that they give no more light than there was. More than
+    /// [`MAX_LOBES`] are left out.
+    #[inline]
+    pub fn push(&mut self, lobe: impl Into<Lobe>) {
+        self.push_scaled(lobe, 1.0);
+    }
+
+    /// Adds `weight`, 0 to 1, of a lobe; none of it at 0.
+    #[inline]
+    pub fn push_scaled(&mut self, lobe: impl Into<Lobe>, weight: f32) {
+        self.push_any(Weighted { weight, scale: 1.0, cover: 0.0, lobe: lobe.into() });
+    }
+
+    /// Adds `weight`, 0 to 1, of a lobe that lies over those to come and dims them.
+    #[inline]
+    pub fn push_layer(&mut self, lobe: impl Into<Lobe>, weight: f32) {
+        self.push_any(Weighted { weight, scale: 1.0, cover: weight, lobe: lobe.into() });
+    }
+
+    /// Adds `weight` of a lobe that wholly dims those to come: they are part of the same share of the surface.
+    #[inline]
+    pub fn push_coat(&mut self, lobe: impl Into<Lobe>, weight: f32) {
+        self.push_any(Weighted { weight, scale: 1.0, cover: 1.0, lobe: lobe.into() });
+    }
+
+    #[inline]
+    fn push_any(&mut self, mut lobe: Weighted) {
+        if lobe.weight > 0.0 {
+            if lobe.lobe.is_matt() && self.lobes.iter().any(|one| one.cover > 0.0) {
+                lobe.scale = 1.0 / self.mean_left().max(1e-3);
+            }
+            let full = self.lobes.try_push(lobe);
+            debug_assert!(full.is_ok(), "more than {MAX_LOBES} lobes");
+        }
+    }
+
+    /// What all layers leave of even light: ∫ 2 μ T(μ) dμ = ∫ 4 s³ T(s²) ds by Gauss and Legendre's five places.
+    fn mean_left(&self) -> f32 {
+        const PLACES: [(f32, f32); 5] = [
+            (0.046_910_077, 0.118_463_44),
+            (0.230_765_34, 0.239_314_34),
+            (0.5, 0.284_444_45),
+            (0.769_234_66, 0.239_314_34),
+            (0.953_089_9, 0.118_463_44),
+        ];
+        PLACES.iter().fold(0.0, |sum, (s, weight)| {
+            let cos = s * s;
+            let along = ((1.0 - cos * cos) * 0.5).max(0.0).sqrt();
+            let w = Vec3::new(along, along, cos);
+            sum + weight * 4.0 * s * cos * self.lobes.iter().fold(1.0, |left, one| left * one.leaves(w))
+        })
+    }
+
+    /// The sum of f |cos θi|, without deltas.
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        self.eval_pdf(wo, wi).0
+    }
+
+    /// The density of [`Bsdf::sample`] at `wi`, per steradian, without deltas.
+    #[inline]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.eval_pdf(wo, wi).1
+    }
+
+    /// [`Bsdf::eval`] and [`Bsdf::pdf`] in one go.
+    #[inline]
+    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        match self.lobes.as_slice() {
+            [] => (Rgb::BLACK, 0.0),
+            [one] => {
+                let (value, pdf) = one.lobe.eval_pdf(wo, wi);
+                (value * one.weight, pdf)
+            }
+            _ => self.eval_pdf_of_many(&self.shares(wo), wo, wi, None),
+        }
+    }
+
+    /// A direction where light may come from, by a point in the unit square; `None` if it is absorbed. The lobe (and
+    /// what may happen within it) is chosen by `u.x`, which is stretched to the unit interval again.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        match self.lobes.as_slice() {
+            [] => None,
+            [one] => {
+                let sample = one.lobe.sample(wo, u)?;
+                Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
+            }
+            _ => self.sample_one_of_many(wo, u),
+        }
+    }
+
+    fn sample_one_of_many(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        let shares = self.shares(wo);
+        let mut rest = u.x;
+        // Rounding may leave a rest at the end, which the last lobe with a share takes.
+        let mut picked = None;
+        for (index, share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+            picked = Some((index, *share, (rest / share).clamp(0.0, 1f32.next_down())));
+            if rest < *share {
+                break;
+            }
+            rest -= share;
+        }
+        let (index, share, x) = picked?;
+        let one = self.lobes.get(index)?;
+        let sample = one.lobe.sample(wo, Vec2::new(x, u.y))?;
+        if sample.scatter == Scatter::Specular {
+            let weight = sample.weight * (one.weight * self.dimming(index, wo, sample.wi) / share);
+            return Some(BsdfSample { weight, pdf: sample.pdf * share, ..sample });
+        }
+        let own = (sample.weight * sample.pdf, sample.pdf);
+        let (value, pdf) = self.eval_pdf_of_many(&shares, wo, sample.wi, Some((index, own)));
+        (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, pdf, ..sample })
+    }
+
+    /// The sum over all lobes; one may be `known`.
+    fn eval_pdf_of_many(
+        &self,
+        shares: &[f32; MAX_LOBES],
+        wo: Vec3,
+        wi: Vec3,
+        known: Option<(usize, (Rgb, f32))>,
+    ) -> (Rgb, f32) {
+        let (mut value, mut density) = (Rgb::BLACK, 0.0);
+        let (mut left_o, mut left_i) = (1.0, 1.0);
+        for (index, (one, share)) in self.lobes.iter().zip(shares).enumerate() {
+            let (part, pdf) = match known {
+                Some((same, known)) if same == index => known,
+                _ => one.lobe.eval_pdf(wo, wi),
+            };
+            value += part * (one.weight * one.dimmed(wo, wi, left_o, left_i));
+            density += pdf * share;
+            if one.cover > 0.0 {
+                (left_o, left_i) = (left_o * one.leaves(wo), left_i * one.leaves(wi));
+            }
+        }
+        (value, density)
+    }
+
+    /// What the layers over a lobe leave of it.
+    fn dimming(&self, index: usize, wo: Vec3, wi: Vec3) -> f32 {
+        let over = self.lobes.iter().take(index);
+        let (left_o, left_i) = over.fold((1.0, 1.0), |(o, i), one| (o * one.leaves(wo), i * one.leaves(wi)));
+        self.lobes.get(index).map_or(0.0, |one| one.dimmed(wo, wi, left_o, left_i))
+    }
+
+    /// The probability of each lobe; all 0 where none gives light.
+    fn shares(&self, wo: Vec3) -> [f32; MAX_LOBES] {
+        let mut shares = [0.0; MAX_LOBES];
+        let (mut sum, mut left) = (0.0, 1.0);
+        for (share, one) in shares.iter_mut().zip(&self.lobes) {
+            let albedo = one.lobe.albedo(wo);
+            *share = super::lobe::sum(albedo) * one.weight * left;
+            sum += *share;
+            if one.cover > 0.0 && wo.z > 0.0 {
+                left *= (1.0 - one.cover * albedo.max_channel()).max(0.0);
+            }
+        }
+        if sum > 0.0 {
+            shares.iter_mut().for_each(|share| *share /= sum);
+        }
+        shares
+    }
+
+    /// The share of the light along `wo`, were it sent in from there, that comes out again anywhere (without the scale
+    /// of radiance that crosses a border): an estimate within a few percent, for denoisers and picking lobes.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        let mut left = 1.0;
+        self.lobes.iter().fold(Rgb::BLACK, |sum, one| {
+            let sum = sum + one.lobe.albedo(wo) * (one.weight * left);
+            left *= one.leaves(wo);
+            sum
+        })
+    }
+
+    /// Whether there are only deltas, or nothing at all: lights need not be asked.
+    #[inline]
+    pub fn is_specular(&self) -> bool {
+        self.lobes.iter().all(|one| one.lobe.is_specular())
+    }
+
+    /// Whether there is any delta.
+    #[inline]
+    pub fn has_specular(&self) -> bool {
+        self.lobes.iter().any(|one| one.lobe.has_specular())
+    }
+
+    /// Every delta with its full weight, not divided by a probability; `pdf` is 1.
+    pub fn deltas(&self, wo: Vec3) -> ArrayVec<BsdfSample, MAX_DELTAS> {
+        let of = |(index, one): (usize, &Weighted)| {
+            let weight = one.weight;
+            one.lobe.deltas(wo).into_iter().map(move |delta| {
+                let weight = weight * self.dimming(index, wo, delta.wi);
+                BsdfSample { weight: delta.weight * weight, ..delta }
+            })
+        };
+        self.lobes.iter().enumerate().flat_map(of).take(MAX_DELTAS).collect()
+    }
+}
