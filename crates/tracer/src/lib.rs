@@ -19,6 +19,7 @@ mod closed_set;
 pub mod background;
 pub mod bsdf;
 pub mod camera;
+pub mod emitter;
 pub mod film;
 pub mod integrator;
 pub mod light;

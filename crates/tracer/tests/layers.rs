@@ -13,6 +13,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("bsdf", &[]),
     ("surface", &[]),
     ("background", &[]),
+    ("emitter", &[]),
     ("shape", &["surface"]),
     ("texture", &["surface"]),
     ("light", &["shape", "texture"]),

@@ -1,0 +1,214 @@
+//! Eight children side by side, and what each may give at a point.
+//!
+//! Everything is written as loops over eight numbers without branches, so that the compiler makes them vector
+//! instructions; sums, products, quotients and square roots give the same bits on all machines.
+
+use super::summary::Summary;
+use juggler_math::Vec3;
+
+/// Children a node.
+pub(super) const WIDTH: usize = 8;
+
+type Lanes = [f32; WIDTH];
+
+/// Added to a squared sine that was found from a cosine: where the sine vanishes rounding takes its digits, and a
+/// sine that is too large makes an angle's bound wider, never narrower.
+const SINE_SLACK: f32 = 1e-6;
+
+/// What lies below the plane by no more than this counts as on it (a cosine).
+const PLANE_SLACK: f32 = 1e-5;
+
+/// The least cosines that count where light may arrive.
+const LEAST_EMISSION: f32 = 1e-3;
+const LEAST_ARRIVAL: f32 = 1e-4;
+
+/// A child's number with this bit is a light, else a node.
+const LIGHT: u32 = 1 << 31;
+
+/// Eight children, the numbers of each kind together.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(super) struct Node {
+    /// Centre of the ball around the child.
+    center: [Lanes; 3],
+    /// Radius of the ball, a little more than necessary, and no less than what keeps squares away from 0.
+    radius: Lanes,
+    /// Axis of the cone of normals.
+    axis: [Lanes; 3],
+    /// Cosine and sine of its half angle.
+    cos_spread: Lanes,
+    sin_spread: Lanes,
+    /// Cosine of the greatest angle to a normal under which it shines, a little less.
+    cos_emission: Lanes,
+    /// 0 for a child that shines to both sides; else a number that takes the other side's cosine out of the running.
+    back: Lanes,
+    /// Power in units of the strongest light's; 0 where there is no child.
+    power: Lanes,
+    child: [u32; WIDTH],
+}
+
+/// What stands in a slot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Child {
+    Node(usize),
+    Light(u32),
+}
+
+/// A point that asks, in the tree's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    point: Vec3,
+    normal: Vec3,
+    /// The least cosine at the point: 1 where it does not count.
+    least_arrival: f32,
+}
+
+impl Place {
+    pub fn new(point: Vec3, normal: Vec3) -> Self {
+        Self { point, normal, least_arrival: if normal == Vec3::ZERO { 1.0 } else { LEAST_ARRIVAL } }
+    }
+}
+
+impl Node {
+    /// A node without children.
+    pub fn empty() -> Self {
+        Self {
+            center: [[0.0; WIDTH]; 3],
+            radius: [1.0; WIDTH],
+            axis: [[0.0; WIDTH]; 3],
+            cos_spread: [1.0; WIDTH],
+            sin_spread: [0.0; WIDTH],
+            cos_emission: [0.0; WIDTH],
+            back: [0.0; WIDTH],
+            power: [0.0; WIDTH],
+            child: [LIGHT; WIDTH],
+        }
+    }
+
+    /// Puts a child into a slot.
+    pub fn set(&mut self, slot: usize, summary: &Summary, child: Child) {
+        for axis in 0..3 {
+            self.center[axis][slot] = summary.center[axis];
+            self.axis[axis][slot] = summary.axis[axis];
+        }
+        self.radius[slot] = summary.radius;
+        self.cos_spread[slot] = summary.cos_spread;
+        self.sin_spread[slot] = (1.0 - f64::from(summary.cos_spread) * f64::from(summary.cos_spread)).sqrt() as f32;
+        self.cos_emission[slot] = summary.cos_emission;
+        self.back[slot] = if summary.two_sided { 0.0 } else { -4.0 };
+        self.power[slot] = summary.power;
+        self.child[slot] = match child {
+            Child::Node(index) => index as u32,
+            Child::Light(index) => index | LIGHT,
+        };
+    }
+
+    pub fn child(&self, slot: usize) -> Child {
+        let child = self.child[slot & (WIDTH - 1)];
+        if child & LIGHT == 0 { Child::Node(child as usize) } else { Child::Light(child & !LIGHT) }
+    }
+
+    /// What each child may give at a place: power · cos θ' · cos θ'ᵢ / d², or 0 where it certainly gives nothing. θ' is
+    /// the angle to the cone of normals and θ'ᵢ that to the normal of the place, both less the half angle
+    /// under which the child's ball is seen.
+    #[inline]
+    pub fn weights(&self, place: &Place) -> Weights {
+        let (p, n) = (place.point, place.normal);
+        Weights::new(std::array::from_fn(|i| {
+            let to = [self.center[0][i] - p.x, self.center[1][i] - p.y, self.center[2][i] - p.z];
+            let squared = to[0] * to[0] + to[1] * to[1] + to[2] * to[2];
+            let ball = self.radius[i] * self.radius[i];
+            let outside = squared > ball;
+            let inverse = 1.0 / select(outside, squared, ball).sqrt();
+
+            // Half angle of the ball: all directions from within. Then of the cone and the ball together.
+            let sin_ball = self.radius[i] * inverse;
+            let cos_ball = select(outside, above(1.0 - sin_ball * sin_ball, 0.0).sqrt(), -1.0);
+            let (cos_cone, sin_cone) = (self.cos_spread[i], self.sin_spread[i]);
+            let cos_both = cos_cone * cos_ball - sin_cone * sin_ball;
+            let sin_both = sin_cone * cos_ball + cos_cone * sin_ball;
+            let narrow = outside & (sin_both > 0.0);
+
+            let along = to[0] * self.axis[0][i] + to[1] * self.axis[1][i] + to[2] * self.axis[2][i];
+            let front = -along * inverse;
+            let cos_axis = above(front, self.back[i] - front);
+            let cos_leaving = select(narrow, less(cos_axis, cos_both, sin_both), 1.0);
+
+            let cos_plane = (to[0] * n.x + to[1] * n.y + to[2] * n.z) * inverse;
+            let cos_arriving = less(cos_plane, cos_ball, sin_ball);
+
+            let lights = (cos_leaving > self.cos_emission[i]) & (cos_arriving > -PLANE_SLACK);
+            let cosines = above(cos_leaving, LEAST_EMISSION) * above(cos_arriving, place.least_arrival);
+            select(lights, self.power[i] * cosines * (inverse * inverse), 0.0)
+        }))
+    }
+}
+
+/// Weights of the children of a node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weights {
+    lanes: Lanes,
+    /// Their sums up to each.
+    sums: Lanes,
+}
+
+impl Weights {
+    #[inline]
+    fn new(lanes: Lanes) -> Self {
+        // Both halves at once. Each sum is made of the one before, so that none is less.
+        let mut sums = lanes;
+        for i in 1..WIDTH / 2 {
+            sums[i] += sums[i - 1];
+            sums[WIDTH / 2 + i] += sums[WIDTH / 2 + i - 1];
+        }
+        let half = sums[WIDTH / 2 - 1];
+        sums[WIDTH / 2..].iter_mut().for_each(|sum| *sum += half);
+        Self { lanes, sums }
+    }
+
+    /// These, or by power where none can light the place: the bound of all together was wider than those of each.
+    #[inline]
+    pub fn or_powers(self, node: &Node) -> Self {
+        if self.sums[WIDTH - 1] > 0.0 { self } else { Self::new(node.power) }
+    }
+
+    /// A slot, its chance, and `u` stretched to [0, 1) again; `None` when all weights are 0.
+    #[inline]
+    pub fn pick(&self, u: f32) -> Option<(usize, f32, f32)> {
+        let total = self.sums[WIDTH - 1];
+        let target = u * total;
+        // Below the total, since u is below 1: the slot's own weight is above 0.
+        let slot = self.sums.iter().map(|sum| usize::from(*sum <= target)).sum::<usize>();
+        if slot >= WIDTH {
+            return None;
+        }
+        let below = if slot == 0 { 0.0 } else { self.sums[slot - 1] };
+        let rest = (target - below) / self.lanes[slot];
+        Some((slot, self.lanes[slot] / total, rest.clamp(0.0, 1f32.next_down())))
+    }
+
+    /// The chance of a slot.
+    #[inline]
+    pub fn chance(&self, slot: usize) -> f32 {
+        let total = self.sums[WIDTH - 1];
+        if total > 0.0 { self.lanes[slot] / total } else { 0.0 }
+    }
+}
+
+/// The cosine of an angle less another, 0 at least. The angles are given by a cosine, and by cosine and sine.
+#[inline(always)]
+fn less(cos: f32, cos_other: f32, sin_other: f32) -> f32 {
+    let sin = (above(1.0 - cos * cos, 0.0) + SINE_SLACK).sqrt();
+    select(cos >= cos_other, 1.0, cos * cos_other + sin * sin_other)
+}
+
+/// The greater number; a plain comparison, which is one instruction.
+#[inline(always)]
+fn above(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn select(which: bool, yes: f32, no: f32) -> f32 {
+    if which { yes } else { no }
+}
