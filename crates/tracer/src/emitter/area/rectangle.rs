@@ -1,0 +1,121 @@
+//! A rectangle that shines: even over its solid angle (Ureña, Fajardo, King, An Area-Preserving Parametrization for
+//! Spherical Rectangles, 2013).
+//!
+//! Deviation: the angles of the spherical rectangle come from arc tangents, which keep their digits where the point
+//! lies almost in the rectangle's plane.
+
+use super::{AreaSample, area_density, seen};
+use juggler_math::{Aabb, DVec3, Vec2, Vec3, fun};
+use std::f64::consts::TAU;
+
+/// Smaller solid angles are sampled by area: their map would lose digits, and little changes over them.
+const LEAST_SOLID_ANGLE: f64 = 1e-7;
+
+/// A rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RectangleEmitter {
+    pub(super) corner: DVec3,
+    pub(super) edges: [DVec3; 2],
+    lengths: [f64; 2],
+    normal: DVec3,
+}
+
+/// The rectangle as a point sees it: coordinates along its edges from the foot of the point's plumb line.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    x: [f64; 2],
+    y: [f64; 2],
+    height: f64,
+    /// The two inner angles of the spherical rectangle that lie on its second half.
+    far_angles: f64,
+    solid_angle: f64,
+}
+
+impl RectangleEmitter {
+    /// A rectangle in world space by a corner and its two edges, whose cross product points to the front; `None` for one
+    /// that is skewed by more than rounding, has no area, or is not finite.
+    pub fn new(corner: Vec3, edges: [Vec3; 2]) -> Option<Self> {
+        let edges = edges.map(Vec3::as_dvec3);
+        let lengths = edges.map(DVec3::length);
+        let cross = edges[0].cross(edges[1]);
+        let skew = edges[0].dot(edges[1]).abs() / (lengths[0] * lengths[1]);
+        let usable = corner.is_finite() && cross.length() < f64::INFINITY && skew < 1e-5;
+        let normal = cross.normalize_or_zero();
+        (usable && normal != DVec3::ZERO).then(|| Self { corner: corner.as_dvec3(), edges, lengths, normal })
+    }
+
+    fn view(&self, from: DVec3) -> View {
+        let to_corner = self.corner - from;
+        let start = [0, 1].map(|i| to_corner.dot(self.edges[i]) / self.lengths[i]);
+        let (x, y) = ([start[0], start[0] + self.lengths[0]], [start[1], start[1] + self.lengths[1]]);
+        let height = to_corner.dot(self.normal).abs();
+        let angle =
+            |x: f64, y: f64, sign: f64| fun::atan2_f64(height * (x * x + y * y + height * height).sqrt(), sign * x * y);
+        let near_angles = angle(x[1], y[0], 1.0) + angle(x[1], y[1], -1.0);
+        let far_angles = angle(x[0], y[1], 1.0) + angle(x[0], y[0], -1.0);
+        View { x, y, height, far_angles, solid_angle: near_angles + far_angles - TAU }
+    }
+
+    pub(super) fn sample(&self, from: Vec3, u: Vec2) -> Option<AreaSample> {
+        let from = from.as_dvec3();
+        let view = self.view(from);
+        let small = view.solid_angle < LEAST_SOLID_ANGLE;
+        let u = u.as_dvec2();
+        let shares = if small {
+            u
+        } else {
+            let place = view.place(u.x, u.y);
+            let share = |i: usize, v: f64, start: f64| ((v - start) / self.lengths[i]).clamp(0.0, 1.0);
+            (share(0, place.0, view.x[0]), share(1, place.1, view.y[0])).into()
+        };
+        let point = self.corner + self.edges[0] * shares.x + self.edges[1] * shares.y;
+        let area_pdf = || area_density(from, point, self.normal, self.area());
+        let pdf = if small { area_pdf() } else { 1.0 / view.solid_angle };
+        seen(from, point, self.normal, pdf).map(|sample| AreaSample { edges: shares.as_vec2(), ..sample })
+    }
+
+    pub(super) fn pdf(&self, from: Vec3, point: Vec3) -> f32 {
+        let from = from.as_dvec3();
+        let solid_angle = self.view(from).solid_angle;
+        if solid_angle >= LEAST_SOLID_ANGLE {
+            return (1.0 / solid_angle) as f32;
+        }
+        area_density(from, point.as_dvec3(), self.normal, self.area()) as f32
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        self.edges[0].cross(self.edges[1]).length()
+    }
+
+    pub(super) fn normal(&self) -> Vec3 {
+        self.normal.as_vec3()
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        let opposite = self.corner + self.edges[0] + self.edges[1];
+        super::box_around([self.corner, self.corner + self.edges[0], self.corner + self.edges[1], opposite])
+    }
+}
+
+impl View {
+    /// The place for `u` and `v`, in the view's coordinates (section 4 of the paper, with its z axis turned round).
+    fn place(&self, u: f64, v: f64) -> (f64, f64) {
+        let height = self.height;
+        let slope = |y: f64| y / (y * y + height * height).sqrt();
+        let (low, high) = (-slope(self.y[0]), slope(self.y[1]));
+        // Where the part of the rectangle left of x has the share u of the solid angle.
+        let angle = u * self.solid_angle + TAU - self.far_angles;
+        let (sin, cos) = fun::sin_cos_f64(angle);
+        let f = (cos * low - high) / sin;
+        let c = (1.0 / (f * f + low * low).sqrt()).min(1.0);
+        let c = if f > 0.0 { c } else { -c };
+        let x = (c * height / (1.0 - c * c).max(f64::MIN_POSITIVE).sqrt()).clamp(self.x[0], self.x[1]);
+        // On that line places are even by the sine of the elevation.
+        let squared = x * x + height * height;
+        let sine = |y: f64| y / (squared + y * y).sqrt();
+        let (start, end) = (sine(self.y[0]), sine(self.y[1]));
+        let s = start + v * (end - start);
+        let y = s * (squared / (1.0 - s * s).max(f64::MIN_POSITIVE)).sqrt();
+        (x, y.clamp(self.y[0], self.y[1]))
+    }
+}
