@@ -16,7 +16,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("emitter", &[]),
     ("shape", &["surface"]),
     ("texture", &["surface"]),
-    ("light", &["shape", "texture"]),
+    ("light", &["emitter", "shape", "texture"]),
     ("material", &["surface", "texture", "bsdf"]),
     ("world", &["shape", "surface", "material", "bsdf", "light", "background"]),
     ("integrator", &["world", "surface", "bsdf", "light", "sampler"]),

@@ -16,6 +16,7 @@ mod solid;
 mod contract;
 
 pub use gradient::Blend;
+pub use sky::PreparedSky;
 
 /// Why a background cannot be: the field at fault and what it should be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

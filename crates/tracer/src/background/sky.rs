@@ -1,7 +1,7 @@
 //! The sky of a clear day, or of its beginning and end, with the sun.
 //!
 //! ```json
-//! {"sky": {"sun_elevation_degrees": 35, "sun_azimuth_degrees": 135, "turbidity": 2.5, "ground_albedo": [0.3, 0.3, 0.3],
+//! {"sky": {"sun_elevation_degrees": 35, "sun_azimuth_degrees": 135, "turbidity": 2, "ground_albedo": [0.3, 0.3, 0.3],
 //!     "intensity": 1, "sun": true, "up": [0, 1, 0]}}
 //! ```
 //!
@@ -46,7 +46,7 @@ pub struct Sky {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<[f32; 3]>")]
     pub sun_direction: Option<Vec3>,
-    /// How hazy the air is: 1 without any haze, 2 to 3 on a clear day, 10 in thick haze.
+    /// How hazy the air is: 1 without any haze, 2 on a clear day, 10 in thick haze.
     #[schemars(range(min = 1, max = 10))]
     pub turbidity: f32,
     /// Share of light that the ground reflects, from 0 to 1 in every channel; it also lights the sky.
@@ -59,10 +59,14 @@ pub struct Sky {
     /// Where its top points, any length.
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// What [`Background::prepare`] computes: clones share it.
+    /// What [`Background::prepare`] computes: clones share it. Not part of the description.
     #[serde(skip)]
-    tables: Option<Arc<Tables>>,
+    pub prepared: PreparedSky,
 }
+
+/// What [`Background::prepare`] computes for a [`Sky`]; nothing before.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PreparedSky(Option<Arc<Tables>>);
 
 impl Default for Sky {
     fn default() -> Self {
@@ -70,12 +74,12 @@ impl Default for Sky {
             sun_elevation_degrees: 35.0,
             sun_azimuth_degrees: 135.0,
             sun_direction: None,
-            turbidity: 2.5,
+            turbidity: 2.0,
             ground_albedo: Rgb::splat(0.3),
             intensity: 1.0,
             sun: true,
             up: Vec3::Y,
-            tables: None,
+            prepared: PreparedSky::default(),
         }
     }
 }
@@ -252,17 +256,17 @@ impl Background for Sky {
 
     fn prepare(&mut self) -> Result<(), InvalidBackground> {
         self.check()?;
-        self.tables = Tables::new(self).map(Arc::new);
+        self.prepared = PreparedSky(Tables::new(self).map(Arc::new));
         Ok(())
     }
 
     fn radiance(&self, ray: &Ray) -> Rgb {
-        let Some(tables) = &self.tables else { return Rgb::BLACK };
+        let Some(tables) = &self.prepared.0 else { return Rgb::BLACK };
         tables.radiance(tables.orientation.to_local(ray.direction))
     }
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
-        let tables = self.tables.as_ref()?;
+        let tables = self.prepared.0.as_ref()?;
         let chance = tables.sun_chance;
         let local = if u.x < chance {
             let u = Vec2::new((u.x / chance).min(1f32.next_down()), u.y);
@@ -277,15 +281,15 @@ impl Background for Sky {
     }
 
     fn pdf(&self, direction: Vec3) -> f32 {
-        self.tables.as_ref().map_or(0.0, |tables| tables.pdf(tables.orientation.to_local(direction)))
+        self.prepared.0.as_ref().map_or(0.0, |tables| tables.pdf(tables.orientation.to_local(direction)))
     }
 
     fn mean(&self) -> Rgb {
-        self.tables.as_ref().map_or(Rgb::BLACK, |tables| tables.mean)
+        self.prepared.0.as_ref().map_or(Rgb::BLACK, |tables| tables.mean)
     }
 
     fn heap_bytes(&self) -> usize {
-        self.tables.as_ref().map_or(0, |_| {
+        self.prepared.0.as_ref().map_or(0, |_| {
             size_of::<Tables>() + 2 * ELEVATIONS * TURNS * size_of::<Rgb>() + 2 * CELLS * CELLS * size_of::<f32>()
         })
     }
@@ -319,7 +323,7 @@ mod tests {
     fn the_sun_gives_what_the_air_lets_through() {
         for (elevation, turbidity) in [(90.0, 1.0), (35.0, 2.5), (5.0, 4.0)] {
             let sky = sky(elevation, turbidity);
-            let tables = sky.tables.as_ref().unwrap();
+            let tables = sky.prepared.0.as_ref().unwrap();
             // Radiance times solid angle, over the irradiance above the atmosphere.
             let through = tables.disk * (TAU * sun_size()) / PI;
             let air = Atmosphere::new(f64::from(turbidity), DVec3::splat(0.3));
