@@ -17,7 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("background", &[]),
     ("shape", &["surface"]),
     ("texture", &["surface"]),
-    ("light", &["shape", "texture"]),
+    ("light", &["emitter", "shape", "texture"]),
     ("material", &["surface", "texture", "bsdf", "medium"]),
     ("world", &["shape", "surface", "medium", "material", "bsdf", "emitter", "light", "background"]),
     ("integrator", &["world", "surface", "material", "medium", "bsdf", "light", "sampler"]),

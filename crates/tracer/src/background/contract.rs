@@ -1,8 +1,124 @@
 //! What every background must keep.
 
 use super::*;
-use juggler_math::Vec3;
-use juggler_math::testing::Random;
+use juggler_math::testing::{Random, chi_squared, z_test};
+
+const SAMPLES: u32 = 1_000_000;
+/// One in a thousand for all examples together.
+const SIGNIFICANCE: f64 = 5e-5;
+
+/// Cells of equal solid angle: bands of height by turns.
+const BANDS: usize = 12;
+const TURNS: usize = 24;
+
+fn cell(direction: Vec3) -> usize {
+    let index = |share: f32, count: usize| ((share * count as f32) as usize).min(count - 1);
+    index(direction.y * 0.5 + 0.5, BANDS) * TURNS + index(directions::turn(direction), TURNS)
+}
+
+/// An even grid of directions, `bands` by `turns` in each cell.
+fn grid(bands: usize, turns: usize) -> impl Iterator<Item = Vec3> {
+    let (rows, columns) = (BANDS * bands, TURNS * turns);
+    let turn = move |i: usize| ((i % columns) as f32 + 0.5) / columns as f32;
+    let height = move |i: usize| ((i / columns) as f64 + 0.5) / rows as f64 * 2.0 - 1.0;
+    (0..rows * columns).map(move |i| directions::direction(turn(i), height(i)))
+}
+
+/// Whether a density is that of the sun's disk.
+fn is_sun(background: &AnyBackground, pdf: f32) -> bool {
+    matches!(background, AnyBackground::Sky(_)) && pdf > 500.0
+}
+
+/// Each cell gets as many samples as the integral of the density says, by a fine grid; those to the sun's disk, which
+/// no grid meets, are counted apart, against its chance.
+#[test]
+fn samples_follow_the_density_which_integrates_to_one() {
+    for (number, background) in AnyBackground::examples().into_iter().enumerate() {
+        let mut random = Random::new(103 + number as u64);
+        let mut observed = vec![0.0; BANDS * TURNS + 1];
+        let mut sun = 0.0f64;
+        let (mut none, mut apart) = (0, 0);
+        for _ in 0..SAMPLES {
+            let Some(sample) = background.sample(random.vec2()) else {
+                none += 1;
+                continue;
+            };
+            let pdf = background.pdf(sample.wi);
+            apart += u32::from((pdf / sample.pdf - 1.0).abs() > 1e-3);
+            if is_sun(&background, pdf) {
+                sun += 1.0;
+            } else {
+                observed[cell(sample.wi)] += 1.0;
+            }
+        }
+        if background.mean().is_black() {
+            assert!(none == SAMPLES && background.pdf(Vec3::X) == 0.0, "{}", name(&background));
+            continue;
+        }
+        // Only rounding across the borders of cells may tell a sample's density from the one of its direction.
+        assert!(none == 0 && apart < SAMPLES / 500, "{}: {none} {apart}", name(&background));
+        // Tables have columns that are whole parts of the grid's; their rows are not.
+        let size = 4.0 * std::f64::consts::PI / (BANDS * TURNS * 120 * 24) as f64;
+        let mut expected = vec![0.0; BANDS * TURNS + 1];
+        for direction in grid(120, 24) {
+            let pdf = background.pdf(direction);
+            if !is_sun(&background, pdf) {
+                expected[cell(direction)] += f64::from(pdf) * size * f64::from(SAMPLES);
+            }
+        }
+        let rest: f64 = expected.iter().sum();
+        let chance = 1.0 - sun / f64::from(SAMPLES);
+        assert!((rest / f64::from(SAMPLES) - chance).abs() < 4e-3, "{}: {rest} {sun}", name(&background));
+        let fit = (f64::from(SAMPLES) - sun) / rest;
+        expected.iter_mut().for_each(|cell| *cell *= fit);
+        chi_squared(&observed, &expected, SIGNIFICANCE)
+            .unwrap_or_else(|error| panic!("{}: {error}", name(&background)));
+    }
+}
+
+fn name(background: &AnyBackground) -> String {
+    format!("{background:?}").chars().take(60).collect()
+}
+
+#[test]
+fn samples_give_the_mean_and_the_radiance_that_rays_see() {
+    for (number, background) in AnyBackground::examples().into_iter().enumerate() {
+        let mut random = Random::new(153 + number as u64);
+        let (mut values, mut apart) = (Vec::new(), 0);
+        let least = background.mean().luminance();
+        for _ in 0..SAMPLES / 4 {
+            let value = background.sample(random.vec2()).map_or(0.0, |sample| {
+                let seen = background.radiance(&Ray::new(Vec3::ZERO, sample.wi)).luminance();
+                let difference = (seen - sample.radiance.luminance()).abs();
+                apart += u32::from(difference > 2e-3 * seen.max(least));
+                assert!(sample.wi.is_normalized() && sample.pdf > 0.0 && sample.radiance.is_finite());
+                f64::from(sample.radiance.luminance() / sample.pdf)
+            });
+            values.push(value);
+        }
+        // The sun's rim and the horizon are steps.
+        assert!(apart < SAMPLES / 2000, "{}: {apart}", name(&background));
+        let mean = f64::from(background.mean().luminance()) * 4.0 * std::f64::consts::PI;
+        let measured = values.iter().sum::<f64>() / values.len() as f64;
+        // Means of pictures and skies are sums over cells.
+        let near = (measured - mean).abs() < 5e-3 * mean || z_test(&values, mean, SIGNIFICANCE).is_ok();
+        assert!(near, "{}: {measured} {mean}", name(&background));
+        let radius = 3.0f32;
+        let power = mean * std::f64::consts::PI * f64::from(radius * radius);
+        assert!((f64::from(background.power(radius)) - power).abs() <= 1e-5 * power);
+    }
+}
+
+/// By a grid: what is light must have a density.
+#[test]
+fn there_is_a_density_wherever_there_is_light() {
+    for background in AnyBackground::examples() {
+        for direction in grid(5, 5) {
+            let light = background.radiance(&Ray::new(Vec3::ZERO, direction));
+            assert!(light.is_black() || background.pdf(direction) > 0.0, "{background:?} {direction}");
+        }
+    }
+}
 
 #[test]
 fn light_is_finite_and_never_negative() {
@@ -28,7 +144,13 @@ fn light_is_finite_and_never_negative() {
 fn json_goes_round() {
     for background in AnyBackground::examples() {
         let text = serde_json::to_string(&background).unwrap();
-        assert_eq!(serde_json::from_str::<AnyBackground>(&text).unwrap(), background, "{text}");
+        let again = serde_json::from_str::<AnyBackground>(&text).unwrap();
+        assert_eq!(serde_json::to_string(&again).unwrap(), text);
+        if !matches!(background, AnyBackground::Environment(_)) {
+            let mut again = again;
+            again.prepare().unwrap();
+            assert_eq!(again, background, "{text}");
+        }
     }
 }
 
@@ -41,6 +163,16 @@ fn says_what_is_wrong() {
         (r#"{"gradient": {"axis": [0, 0, 0]}}"#, "axis"),
         (r#"{"dome": {"radius": 0}}"#, "radius"),
         (r#"{"dome": {"top": [0, 0, -2]}}"#, "top"),
+        (r#"{"environment": {"file": "a", "scale": -1}}"#, "scale"),
+        (r#"{"environment": {"file": "a", "rotation_degrees": 1e30}}"#, "rotation_degrees"),
+        (r#"{"environment": {"file": "a", "up": [0, 0, 0]}}"#, "up"),
+        (r#"{"sky": {"turbidity": 0.5}}"#, "turbidity"),
+        (r#"{"sky": {"sun_elevation_degrees": 91}}"#, "sun_elevation_degrees"),
+        (r#"{"sky": {"sun_azimuth_degrees": 1e9}}"#, "sun_azimuth_degrees"),
+        (r#"{"sky": {"sun_direction": [0, 0, 0]}}"#, "sun_direction"),
+        (r#"{"sky": {"ground_albedo": [0, 2, 0]}}"#, "ground_albedo"),
+        (r#"{"sky": {"intensity": -1}}"#, "intensity"),
+        (r#"{"sky": {"up": [0, 1e39, 0]}}"#, "up"),
     ] {
         let error = serde_json::from_str::<AnyBackground>(json).unwrap().check().unwrap_err();
         assert_eq!(error.field, field, "{json}");

@@ -7,8 +7,9 @@
 //! The colour is bottom + (top − bottom) · y / radius where the ray meets the sphere; below y = 0 it stays.
 //! A ray that starts outside sees the far side; one that misses sees as high as it comes nearest.
 
-use super::{Background, InvalidBackground, check_color};
-use juggler_math::{Ray, Rgb};
+use super::bands::{Bands, Half};
+use super::{Background, BackgroundSample, InvalidBackground, check_color};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +32,14 @@ impl Default for Dome {
     }
 }
 
+impl Dome {
+    /// The sky as the origin sees it, where heights are those of directions.
+    fn bands(&self) -> Bands {
+        let half = |end: Rgb| Half { base: self.bottom, end, squared: false };
+        Bands { axis: Vec3::Y, upper: half(self.top), lower: half(self.bottom) }
+    }
+}
+
 impl Background for Dome {
     fn check(&self) -> Result<(), InvalidBackground> {
         check_color("bottom", self.bottom)?;
@@ -50,6 +59,18 @@ impl Background for Dome {
         // Written so that NaN, from origins without measure, is 0.
         self.bottom.lerp(self.top, if height > 0.0 { height.min(1.0) } else { 0.0 })
     }
+
+    fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        self.bands().sample(u)
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        self.bands().pdf(direction)
+    }
+
+    fn mean(&self) -> Rgb {
+        self.bands().mean()
+    }
 }
 
 #[cfg(test)]
@@ -63,7 +84,6 @@ impl Dome {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_math::Vec3;
     use juggler_math::testing::{Random, close};
 
     #[test]

@@ -6,8 +6,9 @@
 //!
 //! That is the sky of Eric Graham's Juggler (1986), which looks the same below the horizon as above.
 
-use super::{Background, InvalidBackground, check_color};
-use juggler_math::{Ray, Rgb, Vec3};
+use super::bands::{Bands, Half};
+use super::{Background, BackgroundSample, InvalidBackground, check_color};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -52,6 +53,14 @@ impl Default for Gradient {
     }
 }
 
+impl Gradient {
+    fn bands(&self) -> Bands {
+        let half = |end: Rgb| Half { base: self.horizon, end, squared: self.blend == Blend::SineSquared };
+        let axis = self.axis.normalize_or(Vec3::Y);
+        Bands { axis, upper: half(self.zenith), lower: half(self.nadir.unwrap_or(self.zenith)) }
+    }
+}
+
 impl Background for Gradient {
     fn check(&self) -> Result<(), InvalidBackground> {
         check_color("horizon", self.horizon)?;
@@ -73,6 +82,18 @@ impl Background for Gradient {
             Blend::SineSquared => sine * sine,
         };
         self.horizon.lerp(end, share)
+    }
+
+    fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        self.bands().sample(u)
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        self.bands().pdf(direction)
+    }
+
+    fn mean(&self) -> Rgb {
+        self.bands().mean()
     }
 }
 

@@ -1,15 +1,22 @@
-//! Backgrounds: what a ray sees that leaves the world.
+//! Backgrounds: what a ray sees that leaves the world, and light from there.
 
-use juggler_math::{Ray, Rgb};
+use juggler_math::{Ray, Rgb, Vec2, Vec3, warp};
 
+mod atmosphere;
+mod bands;
+mod directions;
 mod dome;
+mod environment;
 mod gradient;
+mod orientation;
+mod sky;
 mod solid;
 
 #[cfg(test)]
 mod contract;
 
 pub use gradient::Blend;
+pub use sky::PreparedSky;
 
 /// Why a background cannot be: the field at fault and what it should be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,12 +28,51 @@ pub struct InvalidBackground {
     pub message: String,
 }
 
+/// Light from a direction that was picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BackgroundSample {
+    /// Unit direction towards the light.
+    pub wi: Vec3,
+    /// [`Background::radiance`] of a ray from the origin in this direction.
+    pub radiance: Rgb,
+    /// Density per steradian with which it was picked, above 0.
+    pub pdf: f32,
+}
+
 /// What a ray sees that leaves the world.
 pub trait Background: Send + Sync {
-    /// Checks the numbers; called once, before the background is used.
+    /// Checks the numbers, those in files left out.
     fn check(&self) -> Result<(), InvalidBackground>;
+    /// Checks everything and makes the tables that light comes from. Called once, before all below, when what is in files
+    /// has been loaded.
+    fn prepare(&mut self) -> Result<(), InvalidBackground> {
+        self.check()
+    }
     /// Light from that way; the ray's direction is a unit vector.
     fn radiance(&self, ray: &Ray) -> Rgb;
+    /// Light from a direction picked by `u` in the unit square, all over the sphere; `None` when there is none.
+    fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        let wi = warp::uniform_sphere(u);
+        let radiance = self.radiance(&Ray::new(Vec3::ZERO, wi));
+        let lit = !self.mean().is_black();
+        lit.then_some(BackgroundSample { wi, radiance, pdf: warp::UNIFORM_SPHERE_PDF })
+    }
+    /// Density per steradian with which [`Background::sample`] picks a unit direction; above 0 wherever there is
+    /// light.
+    fn pdf(&self, _direction: Vec3) -> f32 {
+        if self.mean().is_black() { 0.0 } else { warp::UNIFORM_SPHERE_PDF }
+    }
+    /// Mean radiance over all directions, from the origin.
+    fn mean(&self) -> Rgb;
+    /// Luminance of the power that enters a ball of this radius, for choosing among lights.
+    fn power(&self, world_radius: f32) -> f32 {
+        const PI: f32 = std::f32::consts::PI;
+        4.0 * PI * PI * world_radius * world_radius * self.mean().luminance()
+    }
+    /// Bytes on the heap.
+    fn heap_bytes(&self) -> usize {
+        0
+    }
 }
 
 closed_set! {
@@ -35,6 +81,8 @@ closed_set! {
         solid::Solid,
         gradient::Gradient,
         dome::Dome,
+        environment::Environment,
+        sky::Sky,
     }
 }
 

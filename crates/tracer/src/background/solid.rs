@@ -25,6 +25,10 @@ impl Background for Solid {
     fn radiance(&self, _ray: &Ray) -> Rgb {
         self.color
     }
+
+    fn mean(&self) -> Rgb {
+        self.color
+    }
 }
 
 #[cfg(test)]

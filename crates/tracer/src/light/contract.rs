@@ -139,9 +139,39 @@ fn penumbra_of_a_sphere_is_a_cap() {
     }
 }
 
+/// What arrives from a light must be possible by its bounds, and weigh no more.
+#[test]
+fn bounds_hold_all_light() {
+    use crate::emitter::LightTree;
+    let mut random = Random::new(96);
+    for light in AnyLight::examples() {
+        assert_eq!(light.bounds(9.0).is_some(), light.ball().is_some());
+        let Some(bounds) = light.bounds(9.0) else { continue };
+        let tree = LightTree::build(&[bounds]);
+        for _ in 0..2000 {
+            let from = bounds.bounds.center() + random.unit_vector() * 9.0 + random.point(0.5);
+            let Some(sample) = light.sample(from, random.vec2()) else { continue };
+            assert!(bounds.bounds.grown(1e-3 + bounds.bounds.center().length() * 1e-6).contains(place(from, &sample)));
+            assert!(tree.probability(from, Vec3::ZERO, 0) > 0.0, "{light:?} {from}");
+            assert!(tree.probability(from, sample.wi, 0) > 0.0, "{light:?} {from}");
+        }
+        // The strongest that arrives anywhere at that radius is what 4 π of it would be.
+        let arrives = |_| {
+            let from = bounds.bounds.center() + random.unit_vector() * 9.0;
+            light.sample(from, random.vec2()).map_or(0.0, |sample| sample.radiance.luminance())
+        };
+        let greatest = (0..20_000).map(arrives).fold(0.0, f32::max) * 81.0 * 4.0 * std::f32::consts::PI;
+        assert!((greatest / bounds.power - 1.0).abs() < 0.05, "{light:?}: {greatest} {}", bounds.power);
+    }
+}
+
 #[test]
 fn json_goes_round() {
-    for light in AnyLight::examples() {
+    for mut light in AnyLight::examples() {
+        // What a file holds is not part of it.
+        if let Some(ies) = light.ies() {
+            *ies = Ies::from_file("lamp.ies");
+        }
         let text = serde_json::to_string(&light).unwrap();
         assert_eq!(serde_json::from_str::<AnyLight>(&text).unwrap(), light, "{text}");
     }
@@ -164,6 +194,10 @@ fn says_what_is_wrong() {
         (r#"{"spot": {"beam_exponent": -1}}"#, "beam_exponent"),
         (r#"{"spot": {"direction": [0, 0, 0]}}"#, "direction"),
         (r#"{"directional": {"direction": [0, 1e39, 0]}}"#, "direction"),
+        (r#"{"directional": {"angle_degrees": 181}}"#, "angle_degrees"),
+        (r#"{"directional": {"samples": 0}}"#, "samples"),
+        (r#"{"point": {"ies": {"file": "a", "direction": [0, 0, 0]}}}"#, "ies.direction"),
+        (r#"{"spot": {"ies": {"file": "a", "rotation_degrees": 1e9}}}"#, "ies.rotation_degrees"),
         (r#"{"ambient": {"intensity": 1e39}}"#, "intensity"),
     ] {
         let error = serde_json::from_str::<AnyLight>(json).unwrap().check().unwrap_err();

@@ -1,9 +1,12 @@
 //! Lights: what arrives at a point, and from where.
 
+use crate::emitter::LightBounds;
 use juggler_math::{Rgb, Vec2, Vec3};
 
 mod ambient;
 mod directional;
+mod ies;
+mod photometry;
 mod point;
 mod source;
 mod spot;
@@ -11,6 +14,8 @@ mod spot;
 #[cfg(test)]
 mod contract;
 
+pub use ies::Ies;
+pub use photometry::InvalidIes;
 pub use source::{Attenuation, Extent};
 
 /// Light that would arrive at a point if nothing stood in the way.
@@ -51,6 +56,14 @@ pub trait Light: Send + Sync {
     fn is_point(&self) -> bool;
     /// Centre and radius of a ball that holds all places it shines from; `None` for one without a place.
     fn ball(&self) -> Option<(Vec3, f32)> {
+        None
+    }
+    /// Its bounds in a light tree; `None` for one without a place. `world_radius` bounds the scene, as in [`Light::power`].
+    fn bounds(&self, _world_radius: f32) -> Option<LightBounds> {
+        None
+    }
+    /// The photometric file that it shines by, to be loaded.
+    fn ies(&mut self) -> Option<&mut Ies> {
         None
     }
     /// Light that is everywhere, from nowhere.

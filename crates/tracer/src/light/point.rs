@@ -4,9 +4,12 @@
 //! {"point": {"position": [-564, 686, 147], "color": [1, 1, 1], "intensity": 1,
 //!     "attenuation": {"constant": 1}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
 //! ```
+//!
+//! With a photometric file it shines as a luminaire was measured: `"ies": {"file": "lamp.ies"}`.
 
 use super::source::{self, Attenuation, Extent};
-use super::{InvalidLight, Light, LightSample, check_color};
+use super::{Ies, InvalidLight, Light, LightSample, check_color};
+use crate::emitter::LightBounds;
 use juggler_math::{Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -31,6 +34,9 @@ pub struct Point {
     /// How many places of the extent are asked per sample of the picture.
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,
+    /// A photometric file that says how strongly it shines into each direction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ies: Option<Ies>,
 }
 
 impl Default for Point {
@@ -42,19 +48,32 @@ impl Default for Point {
             attenuation: Attenuation::default(),
             extent: None,
             samples: 1,
+            ies: None,
         }
+    }
+}
+
+impl Point {
+    /// Power without a photometric file.
+    fn reach(&self, world_radius: f32) -> f32 {
+        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        4.0 * std::f32::consts::PI * at_radius * (self.color * self.intensity).luminance()
     }
 }
 
 impl Light for Point {
     fn check(&self) -> Result<(), InvalidLight> {
         check_color(self.color, self.intensity)?;
+        self.ies.as_ref().map_or(Ok(()), Ies::check)?;
         source::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
         let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
-        let radiance = self.color * (self.intensity * arrival.factor);
+        let mut radiance = self.color * (self.intensity * arrival.factor);
+        if let Some(ies) = &self.ies {
+            radiance = radiance * ies.share(-arrival.towards_centre, Vec3::NEG_Y);
+        }
         let arrives = radiance.is_finite() && !radiance.is_black();
         arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
     }
@@ -67,13 +86,22 @@ impl Light for Point {
         self.extent.is_none()
     }
 
+    fn ies(&mut self) -> Option<&mut Ies> {
+        self.ies.as_mut()
+    }
+
     fn ball(&self) -> Option<(Vec3, f32)> {
         Some((self.position, self.extent.map_or(0.0, Extent::radius)))
     }
 
     fn power(&self, world_radius: f32) -> f32 {
-        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
-        4.0 * std::f32::consts::PI * at_radius * (self.color * self.intensity).luminance()
+        let share = self.ies.as_ref().map_or(1.0, |ies| source::mean(|leaving| ies.share(leaving, Vec3::NEG_Y)));
+        self.reach(world_radius) * share
+    }
+
+    fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
+        let power = self.reach(world_radius) * self.ies.as_ref().map_or(1.0, Ies::greatest);
+        Some(source::bounds(self.position, self.extent, power))
     }
 }
 
@@ -94,8 +122,10 @@ impl Point {
             color: Rgb::new(1.0, 0.5, 0.25),
             intensity: 3.0,
             samples: 16,
+            ies: None,
         };
-        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess]
+        let measured = Self { ies: Some(super::ies::tests::lamp()), ..Self::default() };
+        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured]
     }
 }
 

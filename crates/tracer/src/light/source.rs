@@ -1,7 +1,8 @@
 //! What a point light and a spot light share: a place, a size, and light that falls off with distance.
 
 use super::{InvalidLight, check_position, in_range};
-use juggler_math::{Frame, Vec2, Vec3, warp};
+use crate::emitter::LightBounds;
+use juggler_math::{Aabb, Frame, Vec2, Vec3, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -109,6 +110,23 @@ pub(super) fn reach(
     let to = to_centre + offset;
     let distance = to.length();
     (distance > 0.0).then(|| Arrival { towards_centre, wi: to * (1.0 / distance), distance, factor })
+}
+
+/// Mean over all directions, by a grid.
+pub(super) fn mean(share: impl Fn(Vec3) -> f32) -> f32 {
+    const ROWS: u16 = 128;
+    const COLUMNS: u16 = 64;
+    let cell = |i: u16, count: u16| (f32::from(i) + 0.5) / f32::from(count);
+    let row = |i: u16| -> f32 {
+        (0..COLUMNS).map(|j| share(warp::uniform_sphere(Vec2::new(cell(i, ROWS), cell(j, COLUMNS))))).sum()
+    };
+    (0..ROWS).map(row).sum::<f32>() / (f32::from(ROWS) * f32::from(COLUMNS))
+}
+
+/// Bounds of a light that shines everywhere.
+pub(super) fn bounds(position: Vec3, extent: Option<Extent>, power: f32) -> LightBounds {
+    let bounds = Aabb { min: position, max: position }.grown(extent.map_or(0.0, Extent::radius));
+    LightBounds { bounds, axis: Vec3::Y, cos_theta_o: -1.0, cos_theta_e: 0.0, power, two_sided: false }
 }
 
 /// Checks the fields that both lights share.

@@ -11,7 +11,8 @@
 //! formula has an exponent of 1 and no edge: both angles 90.)
 
 use super::source::{self, Attenuation, Extent};
-use super::{InvalidLight, Light, LightSample, check_color, check_direction, in_range};
+use super::{Ies, InvalidLight, Light, LightSample, check_color, check_direction, in_range};
+use crate::emitter::LightBounds;
 use juggler_math::{Rgb, Vec2, Vec3, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,9 @@ pub struct Spot {
     /// How many places of the extent are asked per sample of the picture.
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,
+    /// A photometric file that says how strongly it shines into each direction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ies: Option<Ies>,
 }
 
 impl Default for Spot {
@@ -63,6 +67,7 @@ impl Default for Spot {
             beam_exponent: 0.0,
             extent: None,
             samples: 1,
+            ies: None,
         }
     }
 }
@@ -86,6 +91,7 @@ impl Spot {
 impl Light for Spot {
     fn check(&self) -> Result<(), InvalidLight> {
         check_color(self.color, self.intensity)?;
+        self.ies.as_ref().map_or(Ok(()), Ies::check)?;
         check_direction(self.direction)?;
         in_range("beam_degrees", self.beam_degrees, 0.0, 180.0)?;
         in_range("cutoff_degrees", self.cutoff_degrees, self.beam_degrees, 180.0)?;
@@ -96,7 +102,10 @@ impl Light for Spot {
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
         let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
         let cos = -arrival.towards_centre.dot(self.direction.normalize_or_zero());
-        let radiance = self.color * (self.intensity * arrival.factor * self.share(cos));
+        let mut radiance = self.color * (self.intensity * arrival.factor * self.share(cos));
+        if let Some(ies) = &self.ies {
+            radiance = radiance * ies.share(-arrival.towards_centre, self.direction);
+        }
         let arrives = radiance.is_finite() && !radiance.is_black();
         arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
     }
@@ -109,6 +118,10 @@ impl Light for Spot {
         self.extent.is_none()
     }
 
+    fn ies(&mut self) -> Option<&mut Ies> {
+        self.ies.as_mut()
+    }
+
     fn ball(&self) -> Option<(Vec3, f32)> {
         Some((self.position, self.extent.map_or(0.0, Extent::radius)))
     }
@@ -116,11 +129,32 @@ impl Light for Spot {
     fn power(&self, world_radius: f32) -> f32 {
         const STEPS: u16 = 512;
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        if let Some(ies) = &self.ies {
+            let axis = self.direction.normalize_or_zero();
+            let mean = source::mean(|leaving| self.share(leaving.dot(axis)) * ies.share(leaving, axis));
+            return 2.0 * std::f32::consts::TAU * mean * at_radius * (self.color * self.intensity).luminance();
+        }
         // Over bands of equal solid angle within the cut-off, by midpoints.
         let size = 1.0 - fun::cos(self.cutoff_degrees.to_radians());
         let share = |i: u16| self.share(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
         let mean = (0..STEPS).map(share).sum::<f32>() / f32::from(STEPS);
         std::f32::consts::TAU * size * mean * at_radius * (self.color * self.intensity).luminance()
+    }
+
+    fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
+        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        let shares = self.ies.as_ref().map_or(1.0, Ies::greatest);
+        let power = 2.0 * std::f32::consts::TAU * shares * at_radius * (self.color * self.intensity).luminance();
+        // Full up to the beam's angle, and something for the rest of the way to the cut-off.
+        let beam = fun::cos(self.beam_degrees.to_radians());
+        let edge = fun::cos((self.cutoff_degrees - self.beam_degrees).to_radians());
+        let bounds = source::bounds(self.position, self.extent, power);
+        Some(LightBounds {
+            axis: self.direction.normalize_or(Vec3::NEG_Y),
+            cos_theta_o: beam,
+            cos_theta_e: edge,
+            ..bounds
+        })
     }
 }
 
@@ -144,7 +178,8 @@ impl Spot {
             samples: 4,
             ..Self::default()
         };
-        vec![Self::default(), chess, cosine]
+        let measured = Self { ies: Some(super::ies::tests::lamp()), cutoff_degrees: 70.0, ..Self::default() };
+        vec![Self::default(), chess, cosine, measured]
     }
 }
 

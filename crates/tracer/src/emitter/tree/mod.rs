@@ -30,7 +30,8 @@ pub struct LightBounds {
     pub cos_theta_o: f32,
     /// Cosine of the greatest angle to a normal under which it shines, beyond the cone: 0 for surfaces.
     pub cos_theta_e: f32,
-    /// Emitted power, any unit that is the same for all lights.
+    /// 4 π times the greatest intensity that leaves it in any direction: the power of a point light that is as bright. Any
+    /// unit that is the same for all lights.
     pub power: f32,
     /// Whether it shines to the other side as well.
     pub two_sided: bool,

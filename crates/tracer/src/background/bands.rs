@@ -1,0 +1,96 @@
+//! Picking directions by a luminance that depends on the sine of the elevation alone: from a base at the horizon to an
+//! end at the pole, linearly with the sine or with its square. Both are mixtures of two densities whose integrals
+//! can be turned round, so that samples follow the luminance exactly.
+
+use super::BackgroundSample;
+use juggler_math::{Frame, Rgb, Vec2, Vec3, fun};
+use std::f32::consts::TAU;
+
+/// The half of a sky on one side of the horizon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Half {
+    /// Colour at the horizon.
+    pub base: Rgb,
+    /// Colour at the pole.
+    pub end: Rgb,
+    /// Whether the share of the pole's colour goes by the square of the sine.
+    pub squared: bool,
+}
+
+impl Half {
+    /// Share of the base in the mean over the half.
+    fn base_share(&self) -> f32 {
+        if self.squared { 2.0 / 3.0 } else { 0.5 }
+    }
+
+    /// Mean over the half, every direction counting the same.
+    fn mean(&self) -> Rgb {
+        self.end.lerp(self.base, self.base_share())
+    }
+
+    fn luminance(&self, sine: f32) -> f32 {
+        let share = if self.squared { sine * sine } else { sine };
+        self.base.lerp(self.end, share).luminance()
+    }
+
+    /// A sine from 0 to 1 with the density of the luminance.
+    fn sample(&self, u: f32) -> f32 {
+        let base = self.base.luminance() * self.base_share();
+        let end = self.end.luminance() * (1.0 - self.base_share());
+        let target = u * (base + end);
+        if target < base {
+            let v = (target / base).min(1.0);
+            // Densities 2 (1 - s) and 3/2 (1 - s²).
+            return if self.squared { 2.0 * fun::sin(fun::asin(v) / 3.0) } else { v / (1.0 + (1.0 - v).sqrt()) };
+        }
+        let v = ((target - base) / end).clamp(0.0, 1.0);
+        if self.squared { fun::cbrt_f64(f64::from(v)) as f32 } else { v.sqrt() }
+    }
+}
+
+/// A sky of two halves around an axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bands {
+    /// Unit vector to the zenith.
+    pub axis: Vec3,
+    pub upper: Half,
+    pub lower: Half,
+}
+
+impl Bands {
+    /// Mean over all directions.
+    pub fn mean(&self) -> Rgb {
+        self.upper.mean().lerp(self.lower.mean(), 0.5)
+    }
+
+    /// A direction with the density of the luminance, and that density; `None` when all is black.
+    pub fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        let (upper, lower) = (self.upper.mean().luminance(), self.lower.mean().luminance());
+        let target = u.x * (upper + lower);
+        let sine = if target < upper {
+            self.upper.sample(target / upper)
+        } else if lower > 0.0 {
+            -self.lower.sample(((target - upper) / lower).min(1.0))
+        } else {
+            return None;
+        };
+        let (sin, cos) = fun::sin_cos_turns(u.y);
+        let ring = (1.0 - sine * sine).max(0.0).sqrt();
+        let wi = Frame::around(self.axis).to_world(Vec3::new(ring * cos, ring * sin, sine));
+        let half = if sine < 0.0 { &self.lower } else { &self.upper };
+        let share = if half.squared { sine * sine } else { sine.abs() };
+        let (pdf, radiance) = (self.density(sine), half.base.lerp(half.end, share));
+        (pdf > 0.0).then_some(BackgroundSample { wi, radiance, pdf })
+    }
+
+    /// Density per steradian of a unit direction.
+    pub fn pdf(&self, direction: Vec3) -> f32 {
+        self.density(direction.dot(self.axis).clamp(-1.0, 1.0))
+    }
+
+    fn density(&self, sine: f32) -> f32 {
+        let half = if sine < 0.0 { &self.lower } else { &self.upper };
+        let total = TAU * (self.upper.mean().luminance() + self.lower.mean().luminance());
+        if total > 0.0 { half.luminance(sine.abs()) / total } else { 0.0 }
+    }
+}
