@@ -56,6 +56,8 @@ fn limits() -> String {
         ("objects in memory, those of large groups that repeat counted once", MAX_STORED.to_string()),
         ("nesting of groups", MAX_NESTING.to_string()),
         ("nesting of materials", juggler_tracer::material::MAX_NESTING.to_string()),
+        ("nesting of textures", juggler_tracer::texture::MAX_NESTING.to_string()),
+        ("lookups of textures that one lookup leads to", juggler_tracer::texture::MAX_LOOKUPS.to_string()),
         ("bytes of an expression", expression::MAX_LENGTH.to_string()),
         ("nesting of an expression", expression::MAX_DEPTH.to_string()),
         ("keys of a track", animate::MAX_KEYS.to_string()),
