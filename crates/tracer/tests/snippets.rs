@@ -39,7 +39,7 @@ fn each<T: DeserializeOwned>(family: &str, least: usize, check: impl Fn(&T) -> R
 fn documented_kinds_are_right() {
     let text = |error: &dyn std::error::Error| error.to_string();
     each("camera", 3, |camera: &AnyCamera| camera.project([4, 3].into()).map(|_| ()).map_err(|e| text(&e)));
-    each("texture", 16, |texture: &AnyTexture| texture.check().map_err(|e| text(&e)));
+    each("texture", 17, |texture: &AnyTexture| texture.check().map_err(|e| text(&e)));
     each("light", 4, |light: &AnyLight| light.check().map_err(|e| text(&e)));
     each("background", 3, |background: &AnyBackground| background.check().map_err(|e| text(&e)));
     each("material", 2, |material: &AnyMaterial| {

@@ -1,12 +1,13 @@
 //! Materials: compiled once each, mistakes charged to the place where they stand.
 
+use super::meshes::Files;
 use crate::description::Description;
 use crate::path::{Path, Trail};
 use crate::report::Finding;
 use juggler_tracer::material::{
     AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
 };
-use juggler_tracer::texture::{Input, NoImages, TextureTable};
+use juggler_tracer::texture::{Input, TextureTable};
 
 /// Compiles materials as objects ask for them.
 pub struct Materials {
@@ -17,9 +18,9 @@ pub struct Materials {
 
 impl Materials {
     /// Takes the scene's textures and named materials.
-    pub fn new(scene: &Description, findings: &mut Vec<Finding>) -> Self {
+    pub fn new(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
         let named = scene.textures.iter().map(|(name, texture)| (name.clone(), texture.clone()));
-        let (textures, errors) = TextureTable::compile(named, &NoImages);
+        let (textures, errors) = TextureTable::compile(named, &files);
         // Unknown names have been reported: `validate::names`.
         for (name, error) in errors.iter().filter(|(_, error)| !error.is_unknown_name()) {
             let kind = scene.textures.get(name).map(crate::kind::name_of).unwrap_or_default();

@@ -2,7 +2,8 @@
 
 use super::{Lookup, Slot, TextureTable};
 use super::{
-    brick, checker, dots, fbm, gradient, marble, mix, noise, ramp, triplanar, turbulence, uv, voronoi, wave, wood,
+    brick, checker, dots, fbm, gradient, image, marble, mix, noise, ramp, triplanar, turbulence, uv, voronoi, wave,
+    wood,
 };
 use juggler_math::Rgb;
 
@@ -10,6 +11,7 @@ use juggler_math::Rgb;
 #[derive(Clone, Debug)]
 #[allow(missing_docs, reason = "the kind's own documentation says it")]
 pub enum Compiled {
+    Image(image::CompiledImage),
     Constant(Slot<Rgb>),
     Checker(checker::CompiledChecker),
     Gradient(gradient::CompiledGradient),
@@ -35,6 +37,7 @@ impl Compiled {
     /// The colour at a point, linear light; finite. `textures` is the table that it belongs to.
     pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         match self {
+            Self::Image(kind) => kind.eval(at),
             Self::Constant(color) => textures.color(color, at),
             Self::Checker(kind) => kind.eval(textures, at),
             Self::Gradient(kind) => kind.eval(textures, at),

@@ -1,9 +1,10 @@
 //! From named descriptions to a table of numbers.
 
 use super::check;
-use super::{AnyTexture, Compiled, Input, InvalidTexture, Slot, TextureId, TextureTable};
+use super::{AnyTexture, Compiled, Image, Input, InvalidTexture, Pyramid, Slot, TextureId, TextureTable};
 use juggler_math::Rgb;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// How deep textures may lie in each other.
 pub const MAX_NESTING: u32 = 32;
@@ -34,6 +35,9 @@ pub enum TextureError {
         /// The name.
         name: String,
     },
+    /// A picture that cannot be read.
+    #[error("{0}")]
+    Image(String),
     /// Textures within textures, too many.
     #[error("textures lie more than {MAX_NESTING} deep in each other here")]
     TooDeep,
@@ -49,6 +53,7 @@ impl TextureError {
             Self::Invalid(InvalidTexture { field, .. }) | Self::Unknown { field, .. } | Self::Cycle { field, .. } => {
                 field
             }
+            Self::Image(_) => "file",
             Self::TooDeep | Self::TooMany => "",
         }
     }
@@ -60,12 +65,19 @@ impl TextureError {
 }
 
 /// Where the pictures of image textures come from.
-pub trait Images {}
+pub trait Images {
+    /// The pixels of an image texture of that name; or why there are none.
+    fn image(&self, texture: &str, image: &Image) -> Result<Arc<Pyramid>, String>;
+}
 
 /// There are none.
 pub struct NoImages;
 
-impl Images for NoImages {}
+impl Images for NoImages {
+    fn image(&self, _: &str, image: &Image) -> Result<Arc<Pyramid>, String> {
+        Err(format!("cannot read `{}`: no files are read here", image.file))
+    }
+}
 
 /// What asking a texture costs.
 #[derive(Clone, Copy, Debug)]
@@ -95,8 +107,9 @@ pub struct Resolver<'a> {
     states: BTreeMap<String, State>,
     textures: Vec<(Compiled, Weight)>,
     errors: Vec<(String, TextureError)>,
-    #[expect(dead_code, reason = "image textures ask")]
     images: &'a dyn Images,
+    /// The one that is being compiled.
+    name: String,
     /// How many textures are being compiled, one asked for by the other.
     depth: u32,
     /// What the one that is being compiled costs so far.
@@ -111,8 +124,15 @@ pub fn compile(
     let states: BTreeMap<_, _> =
         named.into_iter().map(|(name, texture)| (name, State::Waiting(Box::new(texture)))).collect();
     let names: Vec<String> = states.keys().cloned().collect();
-    let mut resolver =
-        Resolver { states, textures: Vec::new(), errors: Vec::new(), images, depth: 0, weight: Weight::ALONE };
+    let mut resolver = Resolver {
+        states,
+        textures: Vec::new(),
+        errors: Vec::new(),
+        images,
+        name: String::new(),
+        depth: 0,
+        weight: Weight::ALONE,
+    };
     let mut table = TextureTable::default();
     for name in names {
         // A name that is there and not in progress is found.
@@ -150,6 +170,11 @@ impl Resolver<'_> {
         }
     }
 
+    /// The pixels of an image.
+    pub fn image(&mut self, image: &Image) -> Result<Arc<Pyramid>, TextureError> {
+        self.images.image(&self.name, image).map_err(TextureError::Image)
+    }
+
     /// An error inside a texture is charged to that texture, once, not to those who use it.
     fn by_name(&mut self, field: &str, name: &str) -> Result<TextureId, TextureError> {
         let Some(state) = self.states.get_mut(name) else {
@@ -163,7 +188,10 @@ impl Resolver<'_> {
                 return Ok(id);
             }
         };
-        let compiled = self.compile(&texture).unwrap_or_else(|error| {
+        let outer = std::mem::replace(&mut self.name, name.to_owned());
+        let compiled = self.compile(&texture);
+        self.name = outer;
+        let compiled = compiled.unwrap_or_else(|error| {
             self.errors.push((name.to_owned(), error));
             (Compiled::BLACK, Weight::ALONE)
         });

@@ -3,11 +3,22 @@
 use super::*;
 use juggler_math::Rgb;
 use juggler_math::testing::Random;
+use std::sync::Arc;
+
+/// A picture of four texels, whatever it is called.
+struct TestImages;
+
+impl Images for TestImages {
+    fn image(&self, _: &str, _: &Image) -> Result<Arc<Pyramid>, String> {
+        let texel = |red: f32| [red, red * 2.0, 1.0 - red, red * 0.5];
+        Pyramid::of_numbers([2, 2], 4, [0.1, 0.2, 0.3, 0.4].map(texel).concat()).map(Arc::new).ok_or_else(String::new)
+    }
+}
 
 /// The colour of a texture that names no other.
 pub fn color(texture: &AnyTexture, at: &Lookup) -> Rgb {
     texture.check().unwrap();
-    let (table, errors) = TextureTable::compile([("t".to_owned(), texture.clone())], &NoImages);
+    let (table, errors) = TextureTable::compile([("t".to_owned(), texture.clone())], &TestImages);
     assert!(errors.is_empty(), "{errors:?}");
     table.color(&table.resolve("t", &Input::Texture("t".into())).unwrap(), at)
 }
@@ -16,7 +27,7 @@ pub fn color(texture: &AnyTexture, at: &Lookup) -> Rgb {
 pub fn reader(json: &str) -> impl Fn(&Lookup) -> Rgb + use<> {
     let texture: AnyTexture = serde_json::from_str(json).unwrap();
     texture.check().unwrap();
-    let (table, errors) = TextureTable::compile([("t".to_owned(), texture)], &NoImages);
+    let (table, errors) = TextureTable::compile([("t".to_owned(), texture)], &TestImages);
     assert!(errors.is_empty(), "{errors:?}");
     let slot = table.resolve("t", &Input::Texture("t".into())).unwrap();
     move |at| table.color(&slot, at)
@@ -91,7 +102,7 @@ fn colours_of_a_kind_may_be_textures() {
             }
         }
         let Ok(texture) = serde_json::from_value::<AnyTexture>(json) else { continue };
-        let (table, errors) = TextureTable::compile([grey(), ("t".into(), texture)], &NoImages);
+        let (table, errors) = TextureTable::compile([grey(), ("t".into(), texture)], &TestImages);
         assert!(errors.is_empty(), "{errors:?}");
         seen += usize::from(named >= 2 && table.names().count() == 2);
     }

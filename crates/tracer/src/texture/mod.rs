@@ -13,6 +13,7 @@ mod compiler;
 mod lattice;
 mod mapping;
 mod octaves;
+mod pixels;
 mod table;
 
 mod brick;
@@ -21,6 +22,7 @@ mod constant;
 mod dots;
 mod fbm;
 mod gradient;
+mod image;
 mod marble;
 mod mix;
 mod noise;
@@ -39,9 +41,11 @@ pub use checker::{Axes, is_odd_cell};
 pub use compiled::Compiled;
 pub use compiler::{Images, MAX_LOOKUPS, MAX_NESTING, NoImages, Resolver, TextureError};
 pub use gradient::{GradientShape, Stop};
+pub use image::{Channel, ColorSpace};
 pub use mapping::{Mapping, Scale};
 pub use mix::MixMode;
 pub use octaves::Octaves;
+pub use pixels::{Filter, Pyramid, Texel, Wrap};
 pub use ramp::Steps;
 pub use table::{Slot, TextureId, TextureTable, UnknownTexture};
 pub use voronoi::{Feature, Metric};
@@ -131,6 +135,7 @@ pub trait Texture: Send + Sync {
 closed_set! {
     /// Every texture. In JSON: `{"checker": {"size": 1}}`.
     pub enum AnyTexture: Texture {
+        image::Image,
         constant::Constant,
         checker::Checker,
         gradient::Gradient,

@@ -4,6 +4,7 @@ use super::compiler::{self, NoImages};
 use super::{AnyTexture, Compiled, Input, Lookup, TextureError};
 use juggler_math::Rgb;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A texture's place in the [`TextureTable`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +73,27 @@ impl TextureTable {
                 None => Err(UnknownTexture { field, name: name.clone() }),
             },
         }
+    }
+
+    /// How many textures there are.
+    pub fn len(&self) -> usize {
+        self.textures.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.textures.is_empty()
+    }
+
+    /// Bytes of the pictures that textures show, those that several show counted once.
+    pub fn image_bytes(&self) -> usize {
+        let pixels = |texture: &Compiled| match texture {
+            Compiled::Image(image) => Some(Arc::clone(image.pixels())),
+            _ => None,
+        };
+        let pictures = self.textures.iter().filter_map(pixels);
+        let pictures: BTreeMap<usize, usize> = pictures.map(|p| (Arc::as_ptr(&p).addr(), p.bytes())).collect();
+        pictures.values().sum()
     }
 
     /// The colour of a slot at a point.
