@@ -46,7 +46,7 @@ pub fn inspect(path: &Path) -> Result<Facts, ImageError> {
     codec::inspect(Source { place: &place, format, limits }, &mut bytes)
 }
 
-fn open(path: &Path) -> Result<BufReader<File>, ImageError> {
+pub(crate) fn open(path: &Path) -> Result<BufReader<File>, ImageError> {
     let failed = |source| ImageError::Read { place: path.display().to_string(), source };
     let file = File::open(path).map_err(failed)?;
     if file.metadata().map_err(failed)?.is_dir() {
@@ -55,7 +55,7 @@ fn open(path: &Path) -> Result<BufReader<File>, ImageError> {
     Ok(BufReader::new(file))
 }
 
-fn sniff(place: &str, bytes: &mut (impl BufRead + Seek)) -> Result<Format, ImageError> {
+pub(crate) fn sniff(place: &str, bytes: &mut (impl BufRead + Seek)) -> Result<Format, ImageError> {
     let failed = |source| ImageError::Read { place: place.to_owned(), source };
     let mut start = Vec::new();
     bytes.by_ref().take(12).read_to_end(&mut start).map_err(failed)?;

@@ -10,6 +10,7 @@
 //! - [`animation`]: files of moving pictures;
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
 //! - [`input`]: from a file to an image;
+//! - [`raster`]: from a file to its samples as they are;
 //! - [`mod@compare`]: how much two images differ.
 
 pub mod animation;
@@ -21,6 +22,7 @@ pub mod format;
 pub mod input;
 pub mod look;
 pub mod output;
+pub mod raster;
 pub mod tone;
 
 pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_writer, create_animation};
@@ -31,4 +33,5 @@ pub use format::Format;
 pub use input::{Limits, decode, inspect, read, read_within};
 pub use look::Look;
 pub use output::{Destination, create, to_standard_output, write_image};
+pub use raster::{Encoding, Layout, Raster, Samples, decode_raster, inspect_raster};
 pub use tone::{AnyCurve, Tone};

@@ -2,7 +2,7 @@
 
 use crate::{Error, Picture, Settings};
 use juggler_scene::Scene;
-use juggler_scene::compile::Needs;
+use juggler_scene::compile::{Needs, estimate_picture};
 use juggler_scene::import;
 use juggler_tracer::film::{Film, Rect, TILE};
 use juggler_tracer::render::{self, BAND_PIXELS};
@@ -86,6 +86,12 @@ impl Memory {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the mesh `{name}`"), estimate.kept));
         }
+        for file in &needs.pictures {
+            let estimate = estimate_picture(file);
+            most = most.max(estimate.peak.saturating_sub(estimate.kept));
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            world.push(part(format!("the picture `{name}`"), estimate.kept));
+        }
         building.extend_from_slice(world.get(2..).unwrap_or_default());
         building.push(part("reading files and building trees", most));
         Ok(Self {
@@ -108,6 +114,7 @@ impl Memory {
         self.world.truncate(1);
         self.world.extend(world);
         self.world.push(part("trees", geometry.bvh_bytes as u64));
+        self.world.push(part("textures", geometry.texture_bytes as u64));
         self.building.clear();
         self
     }

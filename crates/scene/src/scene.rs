@@ -1,9 +1,9 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::compile::{self, Assembly, Compiled, Files, Library, Needs};
+use crate::compile::{self, Assembly, Compiled, Files, Library, Needs, pictures};
 use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, put};
-use crate::fingerprint::{Fingerprint, mesh_files};
+use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::moments::Moments;
 use crate::named::Unknown;
 use crate::report::{Finding, Problems, plain_io};
@@ -72,7 +72,7 @@ pub struct Scene {
     pub description: Description,
     /// Where it was read from.
     origin: Option<Arc<Origin>>,
-    /// Mesh files that were loaded, for copies of this scene and its other frames.
+    /// Mesh and picture files that were loaded, for copies of this scene and its other frames.
     library: Library,
 }
 
@@ -130,7 +130,7 @@ impl Scene {
         }
     }
 
-    /// Reads the file again, and of its meshes those that have changed.
+    /// Reads the file again, and of its meshes and pictures those that have changed.
     pub fn reload(&self, path: impl AsRef<Path>) -> Result<Self, SceneError> {
         Self::read(path.as_ref(), self.library.renewed())
     }
@@ -207,12 +207,9 @@ impl Scene {
         Ok(Compiled { world, cameras, course, settings, warnings })
     }
 
-    /// Whether the same stands in both, however it is looked at. Mesh files are compared by their contents.
+    /// Whether the same stands in both, however it is looked at. Mesh and picture files are compared by their contents.
     pub fn has_world_of(&self, other: &Self) -> bool {
         let (a, b) = (&self.description, &other.description);
-        let digests = |scene: &Self| -> Vec<(PathBuf, [u8; 32])> {
-            scene.mesh_files().into_iter().map(|file| (file.clone(), scene.library.digest(&file))).collect()
-        };
         let same_motion = || {
             let (a, b) = (self.moments().0, other.moments().0);
             let placed = |moments: &[Description]| -> Vec<_> {
@@ -222,7 +219,7 @@ impl Scene {
         };
         (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
             && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
-            && digests(self) == digests(other)
+            && digests(a, &self.files()) == digests(b, &other.files())
             && same_motion()
     }
 
@@ -234,14 +231,13 @@ impl Scene {
         }
     }
 
-    fn mesh_files(&self) -> BTreeSet<PathBuf> {
-        mesh_files(&self.description, &self.files())
-    }
-
-    /// The files that it was read from, and those of its meshes.
+    /// The files that it was read from, and those of its meshes and pictures.
     pub fn paths(&self) -> Vec<PathBuf> {
         let texts = self.origin.iter().flat_map(|origin| origin.document.sources.names());
-        texts.map(PathBuf::from).chain(self.mesh_files()).collect()
+        let pictures = pictures(&self.description, &self.files()).into_iter().map(|(file, _)| file);
+        let files: BTreeSet<PathBuf> =
+            mesh_files(&self.description, &self.files()).into_iter().chain(pictures).collect();
+        texts.map(PathBuf::from).chain(files).collect()
     }
 
     /// What building the world will need memory for; no file is read for it.

@@ -76,6 +76,10 @@ wrong! {
     kind_that_needs_more: object(r#"{"shape": "polygon"}"#);
     unknown_material: "{\"version\": 1, \"materials\": {\"gold\": {\"phong\": {}}},\n \"objects\": [{\"shape\": \"sphere\", \"material\": \"glod\"}]}";
     unknown_texture: with(r#""materials": {"red": {"phong": {"diffuse": "marble"}}}"#);
+    unknown_texture_in_a_texture: with(r#""textures": {"planks": {"wood": {"light": "plancks"}}}"#);
+    texture_circle: with(r#""textures": {"a": {"mix": {"b": "b"}}, "b": {"ramp": {"stops": [{"position": 0, "color": "a"}]}}}"#);
+    mortar_wider_than_the_brick: with(r#""textures": {"wall": {"brick": {"width": 0.2, "mortar_width": 0.3}}}"#);
+    texture_without_scale: with(r#""textures": {"wall": {"noise": {"scale": [1, 0, 1]}}}"#);
     unknown_group: object(r#"{"group": "pawn"}"#);
     unknown_camera: with(r#""render": {"camera": "mian"}, "cameras": {"main": {"perspective": {"eye": [0, 0, 9]}}}"#);
     not_a_number_by_expression: object(r#"{"shape": {"sphere": {"radius": "=sqrt(1 - frames*2)"}}}"#);

@@ -18,12 +18,14 @@ pub struct Surface {
     pub uv: Vec2,
     /// The point in object space, for textures that stick to the object.
     pub local: Vec3,
+    /// What `shading_normal` is in object space, for such textures.
+    pub local_normal: Vec3,
 }
 
 impl Surface {
     /// A point with one normal.
     pub fn new(point: Vec3, error: f32, normal: Vec3, uv: Vec2) -> Self {
-        Self { point, error, normal, shading_normal: normal, uv, local: point }
+        Self { point, error, normal, shading_normal: normal, uv, local: point, local_normal: normal }
     }
 
     /// The same point in world space.
@@ -41,6 +43,7 @@ impl Surface {
             shading_normal,
             uv: self.uv,
             local: self.local,
+            local_normal: self.local_normal,
         }
     }
 

@@ -109,7 +109,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     row("textures", description.textures.len().to_string());
     row("cameras", cameras.join(", "));
     row("bounds", bounds_in_words(&compiled.world.bounds()));
-    row("memory", memory_in_words(geometry.geometry_bytes, geometry.bvh_bytes));
+    row("memory", memory_in_words(&geometry));
     motion::rows(&description.animation, &scene.survey()).iter().for_each(|(key, value)| row(key, value.clone()));
     lines.join("\n")
 }
@@ -124,8 +124,13 @@ fn triangles_in_words(geometry: &Geometry) -> String {
     }
 }
 
-fn memory_in_words(geometry: usize, bvh: usize) -> String {
-    format!("{} shapes, {} tree", bytes(geometry as u64), bytes(bvh as u64))
+fn memory_in_words(geometry: &Geometry) -> String {
+    let Geometry { geometry_bytes, bvh_bytes, texture_bytes, .. } = *geometry;
+    let mut words = format!("{} shapes, {} tree", bytes(geometry_bytes as u64), bytes(bvh_bytes as u64));
+    if texture_bytes > 0 {
+        words += &format!(", {} textures", bytes(texture_bytes as u64));
+    }
+    words
 }
 
 fn bounds_in_words(bounds: &Aabb) -> String {
@@ -162,7 +167,11 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "textures": description.textures.len(),
         "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         "bounds": corners(&compiled.world.bounds()),
-        "memory": {"geometry_bytes": geometry.geometry_bytes, "bvh_bytes": geometry.bvh_bytes},
+        "memory": {
+            "geometry_bytes": geometry.geometry_bytes,
+            "bvh_bytes": geometry.bvh_bytes,
+            "texture_bytes": geometry.texture_bytes,
+        },
         "animation": motion::json(&description.animation, &scene.survey()),
     })
     .to_string()

@@ -4,6 +4,7 @@
 
 use super::{ExrCompression, Header, Inspected, ReadSeek, RowWriter, SampleDepth, Source, Texts};
 use crate::output::{Destination, WriteSeek};
+use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::{Format, ImageError};
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::error::Error as ExrError;
@@ -11,7 +12,7 @@ use exr::math::Vec2;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
 use exr::meta::header::Header as ExrHeader;
-use exr::prelude::{Compression, ReadChannels, ReadLayers, f16};
+use exr::prelude::{Compression, ReadChannels, ReadLayers, ReadSpecificChannel, f16};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Read, SeekFrom};
 
@@ -173,12 +174,64 @@ fn header_bytes(header: &Header) -> Vec<u8> {
     bytes
 }
 
-/// The first layer with R, G and B of an EXR, in its data window.
-pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let unreadable = |error: ExrError| match error {
+fn unreadable(source: Source, error: ExrError) -> ImageError {
+    match error {
         ExrError::Io(error) => source.failed(error),
         other => source.malformed(other.to_string()),
+    }
+}
+
+/// What [`raster`] will bring: of the first layer with R, G and B, or with Y alone, and with A if it has one.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+    let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(|e| unreadable(source, e))?;
+    let has = |header: &ExrHeader, names: &[&str]| {
+        names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name))
     };
+    let found = |names: &[&str]| meta.headers.iter().find(|header| !header.deep && has(header, names));
+    let (colors, header) = match (found(&["R", "G", "B"]), found(&["Y"])) {
+        (Some(header), _) => (3, header),
+        (None, Some(header)) => (1, header),
+        (None, None) => return Err(source.malformed("it has no layer with channels R, G and B, or Y")),
+    };
+    let size = source.size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
+    Ok(source.layout(size, colors + u8::from(has(header, &["A"])), 4))
+}
+
+/// The layer that [`layout`] finds, in its data window.
+pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
+    let layout = layout(source, bytes)?;
+    bytes.rewind().map_err(|e| source.failed(e))?;
+    let channels = usize::from(layout.channels);
+    let room = move |size: Vec2<usize>| (size.0, vec![0_f32; size.0 * size.1 * channels]);
+    let put = move |(width, samples): &mut (usize, Vec<f32>), position: Vec2<usize>, pixel: &[f32]| {
+        let start = (position.1 * *width + position.0) * channels;
+        if let Some(place) = samples.get_mut(start..start + channels) {
+            place.copy_from_slice(&pixel[..channels]);
+        }
+    };
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
+    let samples = if channels >= 3 {
+        let reader = reader.rgba_channels(
+            move |size, _| room(size),
+            move |image, position, (r, g, b, a): (f32, f32, f32, f32)| put(image, position, &[r, g, b, a]),
+        );
+        let reader = reader.first_valid_layer().all_attributes().non_parallel();
+        reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels.1)
+    } else {
+        let reader = reader.specific_channels().required("Y").optional("A", 1.0_f32).collect_pixels(
+            move |size, _| room(size),
+            move |image, position, (y, a): (f32, f32)| put(image, position, &[y, a]),
+        );
+        let reader = reader.first_valid_layer().all_attributes().non_parallel();
+        reader.from_buffered(&mut *bytes).map(|image| image.layer_data.channel_data.pixels.1)
+    };
+    let samples = Samples::Floats(samples.map_err(|e| unreadable(source, e))?);
+    Ok(Raster { layout, samples, encoding: Encoding::Linear })
+}
+
+/// The first layer with R, G and B of an EXR, in its data window.
+pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let unreadable = |error| unreadable(source, error);
     let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(unreadable)?;
     for header in &meta.headers {
         source.size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;

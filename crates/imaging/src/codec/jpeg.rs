@@ -3,6 +3,7 @@
 
 use super::{Header, ReadSeek, RowWriter, Source};
 use crate::output::Destination;
+use crate::raster::{Encoding, Raster, Samples};
 use crate::tone::Quantizer;
 use crate::{Format, ImageError};
 use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
@@ -61,6 +62,17 @@ impl RowWriter for Writer {
 
 /// Any baseline or progressive JPEG, taken as sRGB.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
+    let ((width, height), bytes) = samples(source, bytes)?;
+    source.image(width, height, super::pixels_from_srgb(&bytes))
+}
+
+/// The same as its samples, three a pixel.
+pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
+    let (size, bytes) = samples(source, bytes)?;
+    Ok(Raster { layout: source.layout(size, 3, 1), samples: Samples::Bytes(bytes), encoding: Encoding::Srgb })
+}
+
+fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<((u32, u32), Vec<u8>), ImageError> {
     let mut file = Vec::new();
     let most_bytes = source.limits.most_pixels.saturating_mul(4).saturating_add(1 << 24);
     bytes.take(most_bytes).read_to_end(&mut file).map_err(|e| source.failed(e))?;
@@ -68,9 +80,9 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
         return Err(source.malformed("it ends too early"));
     }
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options());
-    let (width, height) = decoded_size(source, &mut decoder)?;
+    let size = decoded_size(source, &mut decoder)?;
     let bytes = decoder.decode().map_err(|e| source.malformed(e.to_string()))?;
-    source.image(width, height, super::pixels_from_srgb(&bytes))
+    Ok((size, bytes))
 }
 
 fn options() -> DecoderOptions {

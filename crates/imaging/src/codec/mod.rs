@@ -9,6 +9,7 @@ mod webp;
 
 use crate::look::{self, Look};
 use crate::output::Destination;
+use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::{Curve, Srgb, Tone};
 use crate::{Format, ImageError, Limits};
 use juggler_math::{Image, Rgb};
@@ -157,7 +158,7 @@ pub(crate) struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn malformed(self, message: impl Into<String>) -> ImageError {
+    pub(crate) fn malformed(self, message: impl Into<String>) -> ImageError {
         ImageError::Malformed { place: self.place.into(), format: self.format, message: message.into() }
     }
 
@@ -182,6 +183,10 @@ impl Source<'_> {
         }
     }
 
+    fn layout(self, (width, height): (u32, u32), channels: u8, sample_bytes: u8) -> Layout {
+        Layout { format: self.format, width, height, channels, sample_bytes }
+    }
+
     fn image(self, width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Image, ImageError> {
         Image::from_pixels(width, height, pixels).ok_or_else(|| self.malformed("it ends too early"))
     }
@@ -196,6 +201,34 @@ pub(crate) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
         Format::Hdr => hdr::read(source, bytes),
         Format::Webp => webp::read(source, bytes),
         Format::Pfm => pfm::read(source, bytes),
+    }
+}
+
+/// Reads a picture's samples as they are.
+pub(crate) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
+    match source.format {
+        Format::Png => png::raster(source, bytes),
+        Format::Jpeg => jpeg::raster(source, bytes),
+        Format::Exr => exr::raster(source, bytes),
+        Format::Webp => webp::raster(source, bytes),
+        Format::Hdr | Format::Pfm => {
+            let image = read(source, bytes)?;
+            let samples = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
+            let layout = source.layout((image.width(), image.height()), 3, 4);
+            Ok(Raster { layout, samples: Samples::Floats(samples), encoding: Encoding::Linear })
+        }
+    }
+}
+
+/// Reads what [`raster`] will bring.
+pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+    match source.format {
+        Format::Png => png::layout(source, bytes),
+        Format::Webp => webp::layout(source, bytes),
+        Format::Exr => exr::layout(source, bytes),
+        Format::Jpeg => Ok(source.layout(jpeg::size(source, bytes)?, 3, 1)),
+        Format::Hdr => Ok(source.layout(hdr::inspect(source, bytes)?.0, 3, 4)),
+        Format::Pfm => Ok(source.layout(pfm::size(source, bytes)?, 3, 4)),
     }
 }
 

@@ -4,10 +4,11 @@
 use super::{Header, Inspected, ReadSeek, RowWriter, Source};
 use crate::ImageError;
 use crate::output::Destination;
+use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::{Curve, Gamma, Quantizer, Srgb};
 use juggler_math::{Image, Rgb};
 use png::{BitDepth, ColorType, DecodingError, EncodingError, StreamWriter};
-use std::io::{self, Write};
+use std::io::{self, BufRead, Seek, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Streams rows into a PNG.
@@ -130,8 +131,8 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let mut reader = decoder.read_info().map_err(|e| unreadable(source, e))?;
     let info = reader.info();
     let (width, height) = source.size(u64::from(info.width), u64::from(info.height))?;
-    let curve: Box<dyn Curve> = match (info.srgb, info.gama_chunk) {
-        (None, Some(gama)) if gama.into_value() > 0.0 => Box::new(Gamma { gamma: 1.0 / f64::from(gama.into_value()) }),
+    let curve: Box<dyn Curve> = match encoding(info) {
+        Encoding::Gamma(gamma) => Box::new(Gamma { gamma }),
         _ => Box::new(Srgb {}),
     };
     let interlaced = info.interlaced;
@@ -148,6 +149,44 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
         }
     }
     source.image(width, height, pixels)
+}
+
+/// The curve that the file names, sRGB when it names none.
+fn encoding(info: &png::Info) -> Encoding {
+    match (info.srgb, info.gama_chunk) {
+        (None, Some(gama)) if gama.into_value() > 0.0 => Encoding::Gamma(1.0 / f64::from(gama.into_value())),
+        _ => Encoding::Srgb,
+    }
+}
+
+/// What [`raster`] brings of a file whose head was read.
+fn layout_of<R: BufRead + Seek>(source: Source, reader: &png::Reader<R>) -> Result<Layout, ImageError> {
+    let size = source.size(u64::from(reader.info().width), u64::from(reader.info().height))?;
+    let (color, depth) = reader.output_color_type();
+    Ok(source.layout(size, color.samples() as u8, if depth == BitDepth::Sixteen { 2 } else { 1 }))
+}
+
+/// Any PNG as its samples: palettes and few bits as bytes.
+pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
+    let mut decoder = png::Decoder::new(&mut *bytes);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(|e| unreadable(source, e))?;
+    let (layout, encoding) = (layout_of(source, &reader)?, encoding(reader.info()));
+    let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?];
+    reader.next_frame(&mut bytes).map_err(|e| unreadable(source, e))?;
+    let samples = if layout.sample_bytes == 2 {
+        Samples::Words(bytes.chunks_exact(2).map(|two| u16::from(two[0]) << 8 | u16::from(two[1])).collect())
+    } else {
+        Samples::Bytes(bytes)
+    };
+    Ok(Raster { layout, samples, encoding })
+}
+
+/// What [`raster`] will bring.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+    let mut decoder = png::Decoder::new(&mut *bytes);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    layout_of(source, &decoder.read_info().map_err(|e| unreadable(source, e))?)
 }
 
 /// How samples become colours.

@@ -2,11 +2,12 @@
 
 use super::{Header, ReadSeek, RowWriter, Source};
 use crate::output::Destination;
+use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::Quantizer;
 use crate::{Format, ImageError};
 use image_webp::{ColorType, DecodingError, EncodingError, WebPDecoder, WebPEncoder};
 use juggler_math::{Image, Rgb};
-use std::io::Write;
+use std::io::{BufRead, Seek, Write};
 
 /// Gathers rows and encodes them at the end.
 pub(super) struct Writer {
@@ -48,17 +49,37 @@ impl RowWriter for Writer {
 
 /// Any still WebP, lossless or lossy, taken as sRGB; alpha is left out.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let mut decoder = WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?;
-    let (width, height) = decoder.dimensions();
-    let (width, height) = source.size(u64::from(width), u64::from(height))?;
-    let samples = if decoder.has_alpha() { 4 } else { 3 };
-    let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
-    let mut bytes = vec![0; size];
-    decoder.read_image(&mut bytes).map_err(|e| unreadable(source, e))?;
-    if samples == 4 {
+    let (layout, mut bytes) = samples(source, bytes)?;
+    if layout.channels == 4 {
         bytes = bytes.chunks_exact(4).flat_map(|c| [c[0], c[1], c[2]]).collect();
     }
-    source.image(width, height, super::pixels_from_srgb(&bytes))
+    source.image(layout.width, layout.height, super::pixels_from_srgb(&bytes))
+}
+
+/// Any still WebP as its samples.
+pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
+    let (layout, bytes) = samples(source, bytes)?;
+    Ok(Raster { layout, samples: Samples::Bytes(bytes), encoding: Encoding::Srgb })
+}
+
+fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Layout, Vec<u8>), ImageError> {
+    let mut decoder = WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?;
+    let layout = layout_of(source, &decoder)?;
+    let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
+    let mut samples = vec![0; size];
+    decoder.read_image(&mut samples).map_err(|e| unreadable(source, e))?;
+    Ok((layout, samples))
+}
+
+fn layout_of<R: BufRead + Seek>(source: Source, decoder: &WebPDecoder<R>) -> Result<Layout, ImageError> {
+    let (width, height) = decoder.dimensions();
+    let size = source.size(u64::from(width), u64::from(height))?;
+    Ok(source.layout(size, if decoder.has_alpha() { 4 } else { 3 }, 1))
+}
+
+/// What [`raster`] will bring.
+pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
+    layout_of(source, &WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?)
 }
 
 /// Width and height.

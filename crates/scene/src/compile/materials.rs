@@ -1,5 +1,6 @@
 //! Materials: compiled once each, mistakes charged to the place where they stand.
 
+use super::meshes::Files;
 use crate::description::Description;
 use crate::path::{Path, Trail};
 use crate::report::Finding;
@@ -17,16 +18,17 @@ pub struct Materials {
 
 impl Materials {
     /// Takes the scene's textures and named materials.
-    pub fn new(scene: &Description, findings: &mut Vec<Finding>) -> Self {
-        for (name, texture) in &scene.textures {
-            if let Err(invalid) = texture.check() {
-                let path = Path::root().key("textures").key(name.as_str()).key(crate::kind::name_of(texture));
-                findings.push(Finding::error(invalid.message).at(path.join(&invalid.field)));
-            }
+    pub fn new(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
+        let named = scene.textures.iter().map(|(name, texture)| (name.clone(), texture.clone()));
+        let (textures, errors) = TextureTable::compile(named, &files);
+        // Unknown names have been reported: `validate::names`.
+        for (name, error) in errors.iter().filter(|(_, error)| !error.is_unknown_name()) {
+            let kind = scene.textures.get(name).map(crate::kind::name_of).unwrap_or_default();
+            let path = Path::root().key("textures").key(name.as_str()).key(kind);
+            findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }
-        let textures = scene.textures.iter().map(|(name, texture)| (name.clone(), texture.clone()));
         let named = scene.materials.iter().map(|(name, material)| (name.clone(), material.clone()));
-        let compiler = MaterialCompiler::new(TextureTable::new(textures), named);
+        let compiler = MaterialCompiler::new(textures, named);
         Self { compiler, plain: None, glows: scene.materials.values().any(glows) }
     }
 

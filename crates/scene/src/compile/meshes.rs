@@ -1,5 +1,6 @@
-//! Mesh files: each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
+//! The files of a scene: meshes (and, in [`super::images`], pictures), each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
 
+use super::images::Pictures;
 use crate::document::{Node, Sources};
 use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
@@ -12,11 +13,12 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-/// The meshes that were loaded so far.
+/// The meshes and pictures that were loaded so far.
 #[derive(Clone, Debug, Default)]
 pub struct Library {
     store: Store,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
+    pictures: Pictures,
 }
 
 /// A mesh file.
@@ -31,7 +33,7 @@ struct Entry {
 }
 
 /// How long a file is and when it was last written to.
-fn state(path: &std::path::Path) -> Option<(u64, SystemTime)> {
+pub(super) fn state(path: &std::path::Path) -> Option<(u64, SystemTime)> {
     let metadata = std::fs::metadata(path).ok()?;
     Some((metadata.len(), metadata.modified().ok()?))
 }
@@ -47,13 +49,17 @@ impl Library {
         &self.store
     }
 
+    pub(super) fn pictures(&self) -> &Pictures {
+        &self.pictures
+    }
+
     /// A library that reads those files again that have changed.
     pub fn renewed(&self) -> Self {
         let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
         let entries = self.entries();
         let kept = entries.iter().filter(|(path, entry)| same(path, entry));
         let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
-        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)) }
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), pictures: self.pictures.renewed() }
     }
 
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
@@ -103,7 +109,7 @@ impl Entry {
     }
 }
 
-fn explain(error: &ImportError) -> String {
+pub(super) fn explain(error: &ImportError) -> String {
     let shown = error.path.display();
     match &error.fault {
         Fault::Read(error) => format!("cannot read `{shown}`: {}", plain_io(error)),

@@ -13,6 +13,7 @@ use std::sync::Arc;
 mod count;
 mod course;
 mod defaults;
+mod images;
 mod locate;
 mod materials;
 mod meshes;
@@ -21,6 +22,8 @@ mod placing;
 mod settings;
 
 pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
+pub(crate) use images::pictures;
+pub use images::{Estimate, MAX_SIDE, MAX_TEXELS, estimate as estimate_picture};
 pub use locate::Part;
 pub use meshes::{Files, Library};
 pub use needs::Needs;
@@ -78,7 +81,7 @@ impl Assembly {
         let mut findings = Vec::new();
         settings::check(&scene.render, &mut findings);
         settings::check_light(scene, &mut findings);
-        let mut materials = materials::Materials::new(scene, &mut findings);
+        let mut materials = materials::Materials::new(scene, files, &mut findings);
         let objects = match count::count(scene) {
             Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
             Err(problems) => {

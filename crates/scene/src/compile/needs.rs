@@ -1,6 +1,7 @@
 //! What a scene will need memory for, told before its files are read and its world is built.
 
 use super::count::{count, stored};
+use super::images::pictures;
 use super::meshes::Files;
 use crate::description::{Description, Object};
 use crate::path::Trail;
@@ -16,6 +17,8 @@ pub struct Needs {
     pub text: u64,
     /// Mesh files that exist, each once.
     pub files: BTreeSet<PathBuf>,
+    /// Picture files that exist, each once.
+    pub pictures: BTreeSet<PathBuf>,
     /// Triangles of meshes that stand in the scene itself.
     pub triangles: u64,
     /// Objects that are stored, those of groups that are stored once counted once.
@@ -34,6 +37,8 @@ impl Needs {
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.origin.map_or(0, |(sources, _)| sources.bytes_to_read());
         let mut needs = Self { text, objects, shadows, ..Self::default() };
+        let pictures = pictures(scene, &files).into_iter();
+        needs.pictures = pictures.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
         scene.materials.values().for_each(|material| needs.material(material));
         let groups = Trail::Root.key("groups");
         scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));

@@ -117,5 +117,12 @@ closed_set! {
 
 /// Where textures are asked at a point of a surface.
 fn lookup(surface: &Surface) -> Lookup {
-    Lookup { uv: surface.uv, local: surface.local, world: surface.point }
+    Lookup {
+        uv: surface.uv,
+        local: surface.local,
+        world: surface.point,
+        normal: surface.shading_normal,
+        local_normal: surface.local_normal,
+        ..Lookup::default()
+    }
 }

@@ -53,7 +53,8 @@ impl Facet {
         let error = robust::gamma(2) * point.abs().dot(normal.abs()) + robust::gamma(4) * size;
         let at = at.as_vec2();
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
-        Surface { shading_normal: self.shading_normal(normal, at), ..Surface::new(point, error, normal, uv) }
+        let shading_normal = self.shading_normal(normal, at);
+        Surface { shading_normal, local_normal: shading_normal, ..Surface::new(point, error, normal, uv) }
     }
 
     /// Barycentrics where the ray meets the plane, in `f64`: those of a slender triangle are not good in `f32`.

@@ -91,7 +91,15 @@ pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surfac
     let (point, normal) = ((center + unit * wide).as_vec3(), unit.as_vec3());
     // Near the origin of coordinates rounding to f32 leaves less than that step does.
     let error = (robust::gamma(2) * point.abs().dot(normal.abs())).max(LEAST_ERROR * radius);
-    Surface { point, error, normal, shading_normal: normal, uv: Vec2::ZERO, local: normal * radius }
+    Surface {
+        point,
+        error,
+        normal,
+        shading_normal: normal,
+        uv: Vec2::ZERO,
+        local: normal * radius,
+        local_normal: normal,
+    }
 }
 
 /// The distance of a hit before it was rounded.

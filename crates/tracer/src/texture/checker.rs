@@ -7,7 +7,9 @@
 //! A point is even where the sum of ⌊(x − offset) / size⌋ over its `axes` is even. Across a flat surface
 //! leave out the axis that stands on it: there the cell would hang on rounding.
 
-use super::{InvalidTexture, Lookup, Space, Texture};
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+};
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,9 +22,9 @@ pub struct Checker {
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub size: f32,
     /// Colour of the cell on the positive side of `offset`.
-    pub even: Rgb,
+    pub even: Input<Rgb>,
     /// Colour of its neighbours.
-    pub odd: Rgb,
+    pub odd: Input<Rgb>,
     /// The coordinates that the cells divide.
     pub space: Space,
     /// Which of the coordinates count.
@@ -51,8 +53,8 @@ impl Default for Checker {
     fn default() -> Self {
         Self {
             size: 1.0,
-            even: Rgb::splat(0.8),
-            odd: Rgb::splat(0.2),
+            even: Rgb::splat(0.8).into(),
+            odd: Rgb::splat(0.2).into(),
             space: Space::Uv,
             axes: Axes::Xyz,
             offset: Vec3::ZERO,
@@ -75,15 +77,37 @@ impl Texture for Checker {
         if !(self.size > 0.0 && self.size.is_finite()) {
             return Err(InvalidTexture::new("size", format!("`size` must be above 0, it is {}", self.size)));
         }
-        let finite =
-            [("even", self.even.is_finite()), ("odd", self.odd.is_finite()), ("offset", self.offset.is_finite())];
-        match finite.iter().find(|(_, finite)| !finite) {
-            Some((field, _)) => Err(InvalidTexture::new(*field, format!("`{field}` must be finite"))),
-            None => Ok(()),
-        }
+        check::color("even", &self.even)?;
+        check::color("odd", &self.odd)?;
+        check::vector("offset", self.offset)
     }
 
-    fn eval(&self, at: &Lookup) -> Rgb {
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        Ok(Compiled::Checker(CompiledChecker {
+            size: self.size,
+            even: resolver.color("even", &self.even)?,
+            odd: resolver.color("odd", &self.odd)?,
+            space: self.space,
+            axes: self.axes,
+            offset: self.offset,
+        }))
+    }
+}
+
+/// A [`Checker`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledChecker {
+    size: f32,
+    even: Slot<Rgb>,
+    odd: Slot<Rgb>,
+    space: Space,
+    axes: Axes,
+    offset: Vec3,
+}
+
+impl CompiledChecker {
+    /// The colour at a point. Edges stay sharp whatever the footprint.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let p = at.point(self.space) - self.offset;
         let odd = |x: f32| is_odd_cell(x, self.size);
         let odd = match self.axes {
@@ -92,7 +116,7 @@ impl Texture for Checker {
             Axes::Xy => odd(p.x) ^ odd(p.y),
             Axes::Yz => odd(p.y) ^ odd(p.z),
         };
-        if odd { self.odd } else { self.even }
+        textures.color(if odd { &self.odd } else { &self.even }, at)
     }
 }
 
@@ -108,6 +132,7 @@ impl Checker {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::contract::color;
     use juggler_math::Vec2;
     use juggler_math::testing::Random;
 
@@ -134,10 +159,12 @@ mod tests {
 
     #[test]
     fn spaces_and_axes() {
-        let at = Lookup { uv: Vec2::new(1.5, 0.5), local: Vec3::new(0.5, 1.5, 2.5), world: Vec3::new(1.5, 1.5, 1.5) };
+        let (uv, local) = (Vec2::new(1.5, 0.5), Vec3::new(0.5, 1.5, 2.5));
+        let at = Lookup { uv, local, world: Vec3::splat(1.5), ..Lookup::default() };
         let odd = |space, axes, offset| {
-            let checker = Checker { space, axes, offset, even: Rgb::BLACK, odd: Rgb::WHITE, ..Checker::default() };
-            checker.eval(&at) == Rgb::WHITE
+            let checker =
+                Checker { space, axes, offset, even: Rgb::BLACK.into(), odd: Rgb::WHITE.into(), ..Checker::default() };
+            color(&checker.into(), &at) == Rgb::WHITE
         };
         assert!(odd(Space::Uv, Axes::Xyz, Vec3::ZERO) && !odd(Space::Uv, Axes::Xyz, Vec3::X * 0.6));
         assert!(odd(Space::Local, Axes::Xyz, Vec3::ZERO) && !odd(Space::Local, Axes::Xz, Vec3::ZERO));

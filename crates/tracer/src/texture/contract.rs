@@ -1,32 +1,120 @@
 //! What every texture must keep.
 
 use super::*;
+use juggler_math::Rgb;
 use juggler_math::testing::Random;
+use std::sync::Arc;
+
+/// A picture of four texels, whatever it is called.
+struct TestImages;
+
+impl Images for TestImages {
+    fn image(&self, _: &str, _: &Image) -> Result<Arc<Pyramid>, String> {
+        let texel = |red: f32| [red, red * 2.0, 1.0 - red, red * 0.5];
+        Pyramid::of_numbers([2, 2], 4, [0.1, 0.2, 0.3, 0.4].map(texel).concat()).map(Arc::new).ok_or_else(String::new)
+    }
+}
+
+/// The colour of a texture that names no other.
+pub fn color(texture: &AnyTexture, at: &Lookup) -> Rgb {
+    texture.check().unwrap();
+    let (table, errors) = TextureTable::compile([("t".to_owned(), texture.clone())], &TestImages);
+    assert!(errors.is_empty(), "{errors:?}");
+    table.color(&table.resolve("t", &Input::Texture("t".into())).unwrap(), at)
+}
+
+/// The same from JSON, at many points: a function of them.
+pub fn reader(json: &str) -> impl Fn(&Lookup) -> Rgb + use<> {
+    let texture: AnyTexture = serde_json::from_str(json).unwrap();
+    texture.check().unwrap();
+    let (table, errors) = TextureTable::compile([("t".to_owned(), texture)], &TestImages);
+    assert!(errors.is_empty(), "{errors:?}");
+    let slot = table.resolve("t", &Input::Texture("t".into())).unwrap();
+    move |at| table.color(&slot, at)
+}
+
+/// A texture of numbers at points of the world, with a footprint.
+pub fn numbers(json: &str) -> impl Fn(Vec3, f32) -> f32 + use<> {
+    let read = reader(json);
+    move |world, footprint| read(&Lookup { world, footprint, ..Lookup::default() }).g
+}
+
+/// Means over as many points of the world as are asked for, sharp and blurred beyond all detail, are the same.
+pub fn keeps_its_mean(json: &str, tolerance: f64) {
+    let read = numbers(json);
+    let mut random = Random::new(73);
+    let count = 20_000;
+    let sharp = (0..count).map(|_| f64::from(read(random.point(200.0), 0.0))).sum::<f64>() / f64::from(count);
+    let far = f64::from(read(Vec3::new(0.3, 0.7, -0.2), 1e4));
+    assert!((sharp - far).abs() < tolerance, "{json}: {sharp} sharp, {far} from afar");
+}
 
 #[test]
 fn colours_are_finite_everywhere() {
     let mut random = Random::new(72);
     for texture in AnyTexture::examples() {
         texture.check().unwrap();
-        for size in [0.0, 1e-20, 1.0, 1e6, 1e15] {
-            let at = Lookup { uv: random.vec2() * size, local: random.point(size), world: random.point(size) };
-            assert!(texture.eval(&at).is_finite(), "{texture:?} {at:?}");
+        for size in [0.0, 1e-20, 1.0, 1e6, 1e15, 1e30, 1e38] {
+            for footprint in [0.0, 1e-3, 1.0, 1e30, f32::INFINITY, f32::NAN] {
+                let at = Lookup {
+                    uv: (random.vec2() - 0.5) * size,
+                    local: random.point(size),
+                    world: random.point(size),
+                    normal: random.unit_vector(),
+                    local_normal: random.unit_vector(),
+                    footprint,
+                    local_footprint: footprint,
+                    uv_footprint: footprint,
+                };
+                assert!(color(&texture, &at).is_finite(), "{texture:?} {at:?}");
+            }
         }
+        let nowhere = Vec3::new(f32::NAN, f32::INFINITY, 0.0);
+        let at = Lookup { uv: Vec2::NAN, local: nowhere, world: nowhere, ..Lookup::default() };
+        assert!(color(&texture, &at).is_finite(), "{texture:?}");
     }
 }
 
 #[test]
-fn json_goes_round() {
+fn json_goes_round_and_every_kind_has_defaults() {
     for texture in AnyTexture::examples() {
         let text = serde_json::to_string(&texture).unwrap();
         assert_eq!(serde_json::from_str::<AnyTexture>(&text).unwrap(), texture, "{text}");
     }
 }
 
+/// Colours may come from textures wherever they stand.
+#[test]
+fn colours_of_a_kind_may_be_textures() {
+    let grey = || ("grey".to_owned(), serde_json::from_str::<AnyTexture>(r#"{"constant": {"color": 0.25}}"#).unwrap());
+    let mut seen = 0;
+    for texture in AnyTexture::examples() {
+        let mut json = serde_json::to_value(&texture).unwrap();
+        let members = json.as_object_mut().unwrap().values_mut().next().unwrap().as_object_mut().unwrap();
+        let mut named = 0;
+        let places = ["offset", "rotate_degrees", "start", "end"];
+        for (_, value) in members.iter_mut().filter(|(key, _)| !places.contains(&key.as_str())) {
+            let is_color = value.as_array().is_some_and(|v| v.len() == 3);
+            let read = |value: &serde_json::Value| serde_json::from_value::<Input<Rgb>>(value.clone());
+            if is_color && matches!(read(value), Ok(Input::Value(_))) {
+                *value = "grey".into();
+                named += 1;
+            }
+        }
+        let Ok(texture) = serde_json::from_value::<AnyTexture>(json) else { continue };
+        let (table, errors) = TextureTable::compile([grey(), ("t".into(), texture)], &TestImages);
+        assert!(errors.is_empty(), "{errors:?}");
+        seen += usize::from(named >= 2 && table.names().count() == 2);
+    }
+    assert!(seen >= 8, "{seen} kinds take textures");
+}
+
 #[test]
 fn tables_look_names_up() {
-    let table = TextureTable::new(AnyTexture::examples().into_iter().enumerate().map(|(i, t)| (format!("t{i}"), t)));
-    assert!(table.names().eq(["t0", "t1", "t2", "t3", "t4"]));
+    let examples = [r#"{"checker": {}}"#, r#"{"uv": {}}"#, r#"{"noise": {}}"#, r#"{"gradient": {}}"#];
+    let examples = examples.map(|json| serde_json::from_str::<AnyTexture>(json).unwrap());
+    let table = TextureTable::new(examples.into_iter().enumerate().map(|(i, t)| (format!("t{i}"), t)));
+    assert!(table.names().eq(["t0", "t1", "t2", "t3"]));
     let at = Lookup { uv: Vec2::new(0.5, 0.25), ..Lookup::default() };
     let slot = table.resolve("diffuse", &Input::Texture("t3".into())).unwrap();
     assert_eq!(table.color(&slot, &at), Rgb::splat(0.25));

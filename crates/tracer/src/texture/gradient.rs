@@ -9,7 +9,9 @@
 //! for the radial shape. Colours are mixed in linear light; before the first and behind the last stop the
 //! colour stays.
 
-use super::{InvalidTexture, Lookup, Space, Texture};
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+};
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,12 +36,19 @@ pub struct Gradient {
 }
 
 /// A colour at a position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stop {
     /// 0 at the gradient's start, 1 at its end.
     pub position: f32,
     /// The colour there.
-    pub color: Rgb,
+    pub color: Input<Rgb>,
+}
+
+impl Stop {
+    /// A colour at a position.
+    pub fn new(position: f32, color: Rgb) -> Self {
+        Self { position, color: color.into() }
+    }
 }
 
 /// How positions grow.
@@ -55,9 +64,8 @@ pub enum GradientShape {
 
 impl Default for Gradient {
     fn default() -> Self {
-        let stop = |position, color| Stop { position, color };
         Self {
-            stops: vec![stop(0.0, Rgb::BLACK), stop(1.0, Rgb::WHITE)],
+            stops: vec![Stop::new(0.0, Rgb::BLACK), Stop::new(1.0, Rgb::WHITE)],
             space: Space::Uv,
             start: Vec3::ZERO,
             end: Vec3::Y,
@@ -66,22 +74,46 @@ impl Default for Gradient {
     }
 }
 
-impl Gradient {
-    fn position(&self, p: Vec3) -> f32 {
-        let (along, from_start) = (self.end - self.start, p - self.start);
-        match self.shape {
-            GradientShape::Linear => from_start.dot(along) / along.length_squared(),
-            GradientShape::Radial => from_start.length() / along.length(),
+/// Checks that there are stops, finite and in order.
+pub(super) fn check_stops(stops: &[Stop]) -> Result<(), InvalidTexture> {
+    if stops.is_empty() {
+        return Err(InvalidTexture::new("stops", "a gradient needs at least one stop"));
+    }
+    for (i, stop) in stops.iter().enumerate() {
+        let color = check::color("color", &stop.color);
+        if !stop.position.is_finite() || color.is_err() {
+            return Err(InvalidTexture::new(format!("stops[{i}]"), "positions and colours must be finite"));
         }
     }
+    if let Some(i) = stops.windows(2).position(|pair| matches!(pair, [a, b] if a.position > b.position)) {
+        let field = format!("stops[{}].position", i + 1);
+        return Err(InvalidTexture::new(field, "positions must rise from stop to stop"));
+    }
+    Ok(())
+}
 
-    fn color(&self, position: f32) -> Rgb {
+/// The colours of stops, by position.
+#[derive(Clone, Debug)]
+pub struct CompiledStops(Vec<(f32, Slot<Rgb>)>);
+
+impl CompiledStops {
+    /// Looks up the names of all stops.
+    pub fn new(stops: &[Stop], resolver: &mut Resolver<'_>) -> Result<Self, TextureError> {
+        let stops = stops.iter().enumerate();
+        let slot =
+            |(i, stop): (usize, &Stop)| Ok((stop.position, resolver.color(&format!("stops[{i}].color"), &stop.color)?));
+        stops.map(slot).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// The colour at a position; `bend` makes of the share between two stops another one.
+    pub fn at(&self, position: f32, bend: fn(f32) -> f32, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let color = |slot: &Slot<Rgb>| textures.color(slot, at);
         // The first stop beyond; `position` lies between it and the one before.
-        let next = self.stops.iter().position(|stop| position < stop.position);
-        let before = next.unwrap_or(self.stops.len()).checked_sub(1).and_then(|i| self.stops.get(i));
-        match (before, next.and_then(|i| self.stops.get(i))) {
-            (Some(a), Some(b)) => a.color.lerp(b.color, (position - a.position) / (b.position - a.position)),
-            (Some(stop), None) | (None, Some(stop)) => stop.color,
+        let next = self.0.iter().position(|(stop, _)| position < *stop);
+        let before = next.unwrap_or(self.0.len()).checked_sub(1).and_then(|i| self.0.get(i));
+        match (before, next.and_then(|i| self.0.get(i))) {
+            (Some((a, from)), Some((b, to))) => color(from).lerp(color(to), bend((position - a) / (b - a))),
+            (Some((_, stop)), None) | (None, Some((_, stop))) => color(stop),
             (None, None) => Rgb::BLACK,
         }
     }
@@ -89,18 +121,7 @@ impl Gradient {
 
 impl Texture for Gradient {
     fn check(&self) -> Result<(), InvalidTexture> {
-        if self.stops.is_empty() {
-            return Err(InvalidTexture::new("stops", "a gradient needs at least one stop"));
-        }
-        for (i, stop) in self.stops.iter().enumerate() {
-            if !(stop.position.is_finite() && stop.color.is_finite()) {
-                return Err(InvalidTexture::new(format!("stops[{i}]"), "positions and colours must be finite"));
-            }
-        }
-        if let Some(i) = self.stops.windows(2).position(|pair| matches!(pair, [a, b] if a.position > b.position)) {
-            let field = format!("stops[{}].position", i + 1);
-            return Err(InvalidTexture::new(field, "positions must rise from stop to stop"));
-        }
+        check_stops(&self.stops)?;
         let length = (self.end - self.start).length_squared();
         if !(length >= f32::MIN_POSITIVE && length.is_finite()) {
             return Err(InvalidTexture::new(
@@ -111,8 +132,35 @@ impl Texture for Gradient {
         Ok(())
     }
 
-    fn eval(&self, at: &Lookup) -> Rgb {
-        self.color(self.position(at.point(self.space)))
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        let Self { space, start, end, shape, .. } = *self;
+        let stops = CompiledStops::new(&self.stops, resolver)?;
+        Ok(Compiled::Gradient(CompiledGradient { stops, space, start, end, shape }))
+    }
+}
+
+/// A [`Gradient`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledGradient {
+    stops: CompiledStops,
+    space: Space,
+    start: Vec3,
+    end: Vec3,
+    shape: GradientShape,
+}
+
+impl CompiledGradient {
+    fn position(&self, p: Vec3) -> f32 {
+        let (along, from_start) = (self.end - self.start, p - self.start);
+        match self.shape {
+            GradientShape::Linear => from_start.dot(along) / along.length_squared(),
+            GradientShape::Radial => from_start.length() / along.length(),
+        }
+    }
+
+    /// The colour at a point.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        self.stops.at(self.position(at.point(self.space)), |share| share, textures, at)
     }
 }
 
@@ -128,12 +176,13 @@ impl Gradient {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::contract::color;
     use juggler_math::Vec2;
 
     fn at(json: &str, p: Vec3) -> Rgb {
         let gradient: Gradient = serde_json::from_str(json).unwrap();
         gradient.check().unwrap();
-        gradient.eval(&Lookup { uv: Vec2::new(p.x, p.y), local: p, world: p * 2.0 })
+        color(&gradient.into(), &Lookup { uv: Vec2::new(p.x, p.y), local: p, world: p * 2.0, ..Lookup::default() })
     }
 
     fn near(a: Rgb, b: [f32; 3]) -> bool {

@@ -1,20 +1,60 @@
 //! Textures: a colour for every point of a surface.
+//!
+//! A description may name other textures for its colours and numbers. All of a scene's are compiled together into a
+//! [`TextureTable`], where names have become numbers.
 
-use juggler_math::{Rgb, Vec2, Vec3};
+use juggler_math::{Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
+mod check;
+mod compiled;
+mod compiler;
+mod lattice;
+mod mapping;
+mod octaves;
+mod pixels;
+mod table;
+
+mod brick;
 mod checker;
+mod constant;
+mod dots;
+mod fbm;
 mod gradient;
+mod image;
+mod marble;
+mod mix;
+mod noise;
+mod ramp;
+mod triplanar;
+mod turbulence;
+mod uv;
+mod voronoi;
+mod wave;
+mod wood;
 
 #[cfg(test)]
 mod contract;
 
 pub use checker::{Axes, is_odd_cell};
+pub use compiled::Compiled;
+pub use compiler::{Images, MAX_LOOKUPS, MAX_NESTING, NoImages, Resolver, TextureError};
 pub use gradient::{GradientShape, Stop};
+pub use image::{Channel, ColorSpace};
+pub use mapping::{Mapping, Scale};
+pub use mix::MixMode;
+pub use octaves::Octaves;
+pub use pixels::{Filter, Pyramid, Texel, Wrap};
+pub use ramp::Steps;
+pub use table::{Slot, TextureId, TextureTable, UnknownTexture};
+pub use voronoi::{Feature, Metric};
+pub use wave::{WaveProfile, WaveShape};
 
 /// Where a texture is asked.
+///
+/// A footprint is the diameter of the patch that the answer stands for, what the ray's cone covers: what is finer is
+/// smoothed away. 0 asks for the point alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lookup {
     /// Surface coordinates.
@@ -23,6 +63,16 @@ pub struct Lookup {
     pub local: Vec3,
     /// The point in world space.
     pub world: Vec3,
+    /// Unit normal that shading uses, world space.
+    pub normal: Vec3,
+    /// Unit normal that shading uses, object space.
+    pub local_normal: Vec3,
+    /// Footprint in world units.
+    pub footprint: f32,
+    /// Footprint in units of object space.
+    pub local_footprint: f32,
+    /// Footprint in units of the surface coordinates.
+    pub uv_footprint: f32,
 }
 
 /// The coordinates that a texture lives in.
@@ -47,6 +97,15 @@ impl Lookup {
             Space::World => self.world,
         }
     }
+
+    /// The footprint in units of that space.
+    pub fn footprint_in(&self, space: Space) -> f32 {
+        match space {
+            Space::Uv => self.uv_footprint,
+            Space::Local => self.local_footprint,
+            Space::World => self.footprint,
+        }
+    }
 }
 
 /// Why a texture cannot be: the field at fault and what it should be.
@@ -69,15 +128,30 @@ impl InvalidTexture {
 pub trait Texture: Send + Sync {
     /// Checks numbers. A texture that fails still has a colour everywhere, but hardly the one that was meant.
     fn check(&self) -> Result<(), InvalidTexture>;
-    /// The colour there, linear light; finite wherever the texture passes its check.
-    fn eval(&self, at: &Lookup) -> Rgb;
+    /// Looks up every name, once. Called only for what passes its check.
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError>;
 }
 
 closed_set! {
     /// Every texture. In JSON: `{"checker": {"size": 1}}`.
     pub enum AnyTexture: Texture {
+        image::Image,
+        constant::Constant,
         checker::Checker,
         gradient::Gradient,
+        ramp::Ramp,
+        mix::Mix,
+        noise::Noise,
+        fbm::Fbm,
+        turbulence::Turbulence,
+        marble::Marble,
+        wood::Wood,
+        voronoi::Voronoi,
+        brick::Brick,
+        dots::Dots,
+        wave::Wave,
+        triplanar::Triplanar,
+        uv::Uv,
     }
 }
 
@@ -94,86 +168,5 @@ pub enum Input<T> {
 impl<T> From<T> for Input<T> {
     fn from(value: T) -> Self {
         Self::Value(value)
-    }
-}
-
-/// A texture's place in the [`TextureTable`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TextureId(u32);
-
-/// An [`Input`] whose name has been looked up: it cannot dangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Slot<T> {
-    /// The same everywhere.
-    Value(T),
-    /// Asked at each point.
-    Texture(TextureId),
-}
-
-impl<T> Slot<T> {
-    /// Whether it may differ from point to point.
-    pub fn is_texture(&self) -> bool {
-        matches!(self, Self::Texture(_))
-    }
-}
-
-/// A material named a texture that the scene has not.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no texture is called `{name}`")]
-pub struct UnknownTexture {
-    /// The field that names it.
-    pub field: &'static str,
-    /// The name.
-    pub name: String,
-}
-
-/// All textures of a scene, by name and by number.
-#[derive(Clone, Debug, Default)]
-pub struct TextureTable {
-    names: BTreeMap<String, TextureId>,
-    textures: Vec<AnyTexture>,
-}
-
-impl TextureTable {
-    /// Takes the textures with their names.
-    pub fn new(named: impl IntoIterator<Item = (String, AnyTexture)>) -> Self {
-        let mut table = Self::default();
-        for (name, texture) in named {
-            table.names.insert(name, TextureId(u32::try_from(table.textures.len()).unwrap_or(u32::MAX)));
-            table.textures.push(texture);
-        }
-        table
-    }
-
-    /// The names of all textures, in order: for "did you mean".
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.names.keys().map(String::as_str)
-    }
-
-    /// Looks a name up once, when a material is compiled.
-    pub fn resolve<T: Clone>(&self, field: &'static str, input: &Input<T>) -> Result<Slot<T>, UnknownTexture> {
-        match input {
-            Input::Value(value) => Ok(Slot::Value(value.clone())),
-            Input::Texture(name) => match self.names.get(name) {
-                Some(id) => Ok(Slot::Texture(*id)),
-                None => Err(UnknownTexture { field, name: name.clone() }),
-            },
-        }
-    }
-
-    /// The colour of a slot at a point.
-    pub fn color(&self, slot: &Slot<Rgb>, at: &Lookup) -> Rgb {
-        match slot {
-            Slot::Value(value) => *value,
-            Slot::Texture(id) => self.textures.get(id.0 as usize).map_or(Rgb::BLACK, |t| t.eval(at)),
-        }
-    }
-
-    /// The number of a slot at a point: a texture's luminance.
-    pub fn number(&self, slot: &Slot<f32>, at: &Lookup) -> f32 {
-        match slot {
-            Slot::Value(value) => *value,
-            Slot::Texture(id) => self.textures.get(id.0 as usize).map_or(0.0, |t| t.eval(at).luminance()),
-        }
     }
 }

@@ -172,7 +172,7 @@ fn local_at(motion: &Motion, ray: &Ray) -> Ray {
 fn textured(shape: &AnyShape, surface: Surface, transform: &Transform) -> Surface {
     let outwards = transform.vector_to_local(surface.normal).normalize();
     let AnyShape::Sphere(sphere) = shape else { return surface };
-    Surface { uv: longitude_latitude(outwards), local: outwards * sphere.radius, ..surface }
+    Surface { uv: longitude_latitude(outwards), local: outwards * sphere.radius, local_normal: outwards, ..surface }
 }
 
 /// One leaf entry. Spheres bring their numbers along; for the others one more look at the object is no

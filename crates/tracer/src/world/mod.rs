@@ -184,6 +184,7 @@ impl World {
 
     /// Counts for reports.
     pub fn geometry(&self) -> Geometry {
-        Geometry::of(&self.top, self.lamps.len())
+        let texture_bytes = self.materials.textures().image_bytes();
+        Geometry { texture_bytes, ..Geometry::of(&self.top, self.lamps.len()) }
     }
 }

@@ -4,7 +4,7 @@ use super::{Schema, variants};
 use crate::compile::{MAX_EDGE, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
 use crate::expression::FUNCTIONS;
 use crate::validate::{family_noun, plural};
-use crate::{animate, document, expression};
+use crate::{animate, compile, document, expression};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -56,11 +56,15 @@ fn limits() -> String {
         ("objects in memory, those of large groups that repeat counted once", MAX_STORED.to_string()),
         ("nesting of groups", MAX_NESTING.to_string()),
         ("nesting of materials", juggler_tracer::material::MAX_NESTING.to_string()),
+        ("nesting of textures", juggler_tracer::texture::MAX_NESTING.to_string()),
+        ("lookups of textures that one lookup leads to", juggler_tracer::texture::MAX_LOOKUPS.to_string()),
         ("bytes of an expression", expression::MAX_LENGTH.to_string()),
         ("nesting of an expression", expression::MAX_DEPTH.to_string()),
         ("keys of a track", animate::MAX_KEYS.to_string()),
         ("points of a path", animate::MAX_POINTS.to_string()),
         ("nesting of value forms", animate::MAX_NESTING.to_string()),
+        ("side of a texture's picture, in pixels", compile::MAX_SIDE.to_string()),
+        ("pixels of a texture's picture", compile::MAX_TEXELS.to_string()),
         ("edge of a picture, in pixels", MAX_EDGE.to_string()),
         ("pixels of a picture", MAX_PIXELS.to_string()),
         ("samples of a pixel", MAX_SAMPLES.to_string()),

@@ -1,0 +1,218 @@
+//! Between texels and beyond borders.
+
+use super::{Pyramid, Texel};
+use juggler_math::fun;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What lies beyond a picture's border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Wrap {
+    /// The picture again.
+    #[default]
+    Repeat,
+    /// The picture again, every other time turned over.
+    Mirror,
+    /// What is at the border.
+    Clamp,
+    /// Nothing: black, alpha 0.
+    Black,
+}
+
+/// How a place between texels gets its colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Filter {
+    /// That of the texel it lies in: blocks from close by.
+    Nearest,
+    /// Mixed of the four texels about.
+    Bilinear,
+    /// The same, and from afar mixed of smaller copies of the picture, by the size of the ray's footprint.
+    #[default]
+    Trilinear,
+}
+
+impl Wrap {
+    /// A coordinate in units of the picture where the numbers are small; the picture's first period, as far as there are
+    /// periods.
+    fn near(self, x: f32) -> f64 {
+        let x = if x.is_finite() { f64::from(x) } else { 0.0 };
+        match self {
+            Self::Repeat => x - fun::floor_f64(x),
+            Self::Mirror => x - 2.0 * fun::floor_f64(x * 0.5),
+            Self::Clamp | Self::Black => x.clamp(-4.0, 4.0),
+        }
+    }
+
+    /// The texel of a line of `size` that stands at place `i`, which lies less than five lines off.
+    fn texel(self, i: i64, size: u32) -> Option<u32> {
+        let (size, last) = (i64::from(size), i64::from(size) - 1);
+        let found = match self {
+            Self::Repeat => i.rem_euclid(size),
+            Self::Mirror => {
+                let at = i.rem_euclid(2 * size);
+                at.min(2 * size - 1 - at)
+            }
+            Self::Clamp => i.clamp(0, last),
+            Self::Black if i < 0 || i > last => return None,
+            Self::Black => i,
+        };
+        u32::try_from(found).ok()
+    }
+}
+
+impl Pyramid {
+    /// The texel at (x, y), from (0, 0) at the top left to (1, 1) at the bottom right, for a footprint of that diameter in the
+    /// same units.
+    pub fn sample(&self, [x, y]: [f32; 2], width: f32, wrap: [Wrap; 2], filter: Filter) -> Texel {
+        let at = [wrap[0].near(x), wrap[1].near(y)];
+        if filter == Filter::Nearest {
+            return self.at(0, at, wrap);
+        }
+        let [wide, high] = self.size(0);
+        let texels = width * wide.max(high) as f32;
+        if filter == Filter::Bilinear || texels.is_nan() || texels <= 1.0 {
+            return self.bilinear(0, at, wrap);
+        }
+        // One texel of this level is as wide as the footprint.
+        let level = fun::log2(texels.min(1e9));
+        let last = self.levels() - 1;
+        let lower = (level as usize).min(last);
+        let share = if lower == last { 0.0 } else { level - lower as f32 };
+        let fine = self.bilinear(lower, at, wrap);
+        if share <= 0.0 {
+            return fine;
+        }
+        let coarse = self.bilinear(lower + 1, at, wrap);
+        std::array::from_fn(|i| fine[i] + (coarse[i] - fine[i]) * share)
+    }
+
+    /// The texel that a place lies in.
+    fn at(&self, level: usize, at: [f64; 2], wrap: [Wrap; 2]) -> Texel {
+        let size = self.size(level);
+        let index = |axis: usize| wrap[axis].texel(fun::floor_f64(at[axis] * f64::from(size[axis])) as i64, size[axis]);
+        match (index(0), index(1)) {
+            (Some(x), Some(y)) => self.texel(level, x, y),
+            _ => [0.0; 4],
+        }
+    }
+
+    /// Mixed of the four texels whose middles are about a place.
+    fn bilinear(&self, level: usize, at: [f64; 2], wrap: [Wrap; 2]) -> Texel {
+        let size = self.size(level);
+        let place = |axis: usize| {
+            let x = at[axis] * f64::from(size[axis]) - 0.5;
+            let floor = fun::floor_f64(x);
+            let index = floor as i64;
+            (wrap[axis].texel(index, size[axis]), wrap[axis].texel(index + 1, size[axis]), (x - floor) as f32)
+        };
+        let ((left, right, across), (top, bottom, down)) = (place(0), place(1));
+        let texel = |x: Option<u32>, y: Option<u32>| match (x, y) {
+            (Some(x), Some(y)) => self.texel(level, x, y),
+            _ => [0.0; 4],
+        };
+        let (a, b, c, d) = (texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom));
+        std::array::from_fn(|i| {
+            let upper = a[i] * (1.0 - across) + b[i] * across;
+            let lower = c[i] * (1.0 - across) + d[i] * across;
+            upper * (1.0 - down) + lower * down
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::Random;
+
+    const ALL: [Wrap; 4] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black];
+
+    fn random_picture(width: u32, height: u32, random: &mut Random) -> Pyramid {
+        let numbers = (0..width * height * 3).map(|_| random.f32()).collect();
+        Pyramid::of_numbers([width, height], 3, numbers).unwrap()
+    }
+
+    /// The texel at a place of an endless plane of texels.
+    fn endless(picture: &Pyramid, x: i64, y: i64, wrap: [Wrap; 2]) -> Texel {
+        let [width, height] = picture.size(0).map(i64::from);
+        let turn = |i: i64, size: i64, wrap: Wrap| match wrap {
+            Wrap::Repeat => Some(i - size * i.div_euclid(size)),
+            Wrap::Mirror if i.div_euclid(size) % 2 == 0 => Some(i.rem_euclid(size)),
+            Wrap::Mirror => Some(size - 1 - i.rem_euclid(size)),
+            Wrap::Clamp => Some(i.max(0).min(size - 1)),
+            Wrap::Black => (0..size).contains(&i).then_some(i),
+        };
+        match (turn(x, width, wrap[0]), turn(y, height, wrap[1])) {
+            (Some(x), Some(y)) => picture.texel(0, x as u32, y as u32),
+            _ => [0.0; 4],
+        }
+    }
+
+    #[test]
+    fn bilinear_and_nearest_agree_with_a_plane_of_texels() {
+        let mut random = Random::new(740);
+        let picture = random_picture(5, 3, &mut random);
+        for _ in 0..3000 {
+            let wrap = [ALL[random.below(4)], ALL[random.below(4)]];
+            let (x, y) = (random.range(-3.5, 3.5), random.range(-3.5, 3.5));
+            let (column, row) = (f64::from(x) * 5.0, f64::from(y) * 3.0);
+            let nearest = endless(&picture, column.floor() as i64, row.floor() as i64, wrap);
+            assert_eq!(picture.sample([x, y], 0.0, wrap, Filter::Nearest), nearest, "{x} {y} {wrap:?}");
+            let (left, top) = ((column - 0.5).floor(), (row - 0.5).floor());
+            let mut mixed = [0.0; 4];
+            for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let texel = endless(&picture, left as i64 + i, top as i64 + j, wrap);
+                let weight =
+                    (1.0 - (column - 0.5 - left - i as f64).abs()) * (1.0 - (row - 0.5 - top - j as f64).abs());
+                (0..4).for_each(|k| mixed[k] += f64::from(texel[k]) * weight);
+            }
+            for filter in [Filter::Bilinear, Filter::Trilinear] {
+                let found = picture.sample([x, y], 0.0, wrap, filter);
+                assert!(
+                    (0..4).all(|k| (f64::from(found[k]) - mixed[k]).abs() < 1e-5),
+                    "{x} {y} {wrap:?}: {found:?} {mixed:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn far_away_there_is_a_colour_too() {
+        let picture = random_picture(7, 4, &mut Random::new(741));
+        for far in [1e6, -1e9, 1e30, f32::MAX, f32::MIN, f32::INFINITY, f32::NAN] {
+            for (wrap, filter) in
+                ALL.into_iter().zip([Filter::Nearest, Filter::Bilinear, Filter::Trilinear, Filter::Trilinear])
+            {
+                for width in [0.0, 1e30, f32::INFINITY, f32::NAN] {
+                    let texel = picture.sample([far, -far], width, [wrap; 2], filter);
+                    assert!(texel.iter().all(|v| (0.0..=1.0).contains(v)), "{far} {wrap:?}: {texel:?}");
+                }
+            }
+        }
+        assert_eq!(picture.sample([1e9, 0.5], 0.0, [Wrap::Black; 2], Filter::Bilinear), [0.0; 4]);
+        assert_eq!(picture.sample([-1e9, 0.125], 0.0, [Wrap::Clamp; 2], Filter::Nearest), picture.texel(0, 0, 0));
+    }
+
+    #[test]
+    fn wide_footprints_see_the_mean() {
+        let mut random = Random::new(742);
+        let picture = random_picture(64, 64, &mut random);
+        let mean = picture.texel(6, 0, 0);
+        let sample = |x: f32, width: f32| picture.sample([x, 0.4], width, [Wrap::Repeat; 2], Filter::Trilinear);
+        assert_eq!((sample(0.3, 1.0), sample(0.9, 100.0)), (mean, mean));
+        // In between, the spread of values falls with the footprint.
+        let spread = |width: f32| {
+            let values: Vec<f32> = (0..500).map(|i| sample(i as f32 * 0.002, width)[0]).collect();
+            let mean = values.iter().sum::<f32>() / 500.0;
+            values.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / 500.0
+        };
+        let spreads = [0.0, 0.02, 0.05, 0.1, 0.3].map(spread);
+        assert!(spreads.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{spreads:?}");
+        // No jump from level to level.
+        for i in 1..2000 {
+            let (a, b) = (sample(0.31, i as f32 * 0.0005), sample(0.31, (i + 1) as f32 * 0.0005));
+            assert!((a[0] - b[0]).abs() < 0.03, "{i}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Samples as they lie in memory, one to four a texel.
+
+use super::half;
+
+/// The samples of one picture, in as few bytes as keep them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texels {
+    /// Levels, which a table makes light of.
+    Bytes(Vec<u8>),
+    /// Numbers with 11 bits of precision.
+    Halves(Vec<u16>),
+    /// Numbers.
+    Floats(Vec<f32>),
+}
+
+impl Texels {
+    /// Numbers: as halves where that loses nothing. What is no number becomes 0, what is infinite very large.
+    pub fn of_numbers(mut numbers: Vec<f32>) -> Self {
+        for number in &mut numbers {
+            *number = if number.is_nan() { 0.0 } else { number.clamp(-1e30, 1e30) };
+        }
+        let is_half = |number: &f32| half::to_f32(half::from_f32(*number)).to_bits() == number.to_bits();
+        if numbers.iter().all(is_half) {
+            return Self::Halves(numbers.iter().map(|number| half::from_f32(*number)).collect());
+        }
+        Self::Floats(numbers)
+    }
+
+    /// As many samples of the same kind, all 0.
+    pub fn zeros(&self, count: usize) -> Self {
+        match self {
+            Self::Bytes(_) => Self::Bytes(vec![0; count]),
+            Self::Halves(_) => Self::Halves(vec![0; count]),
+            Self::Floats(_) => Self::Floats(vec![0.0; count]),
+        }
+    }
+
+    /// How many samples.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Bytes(samples) => samples.len(),
+            Self::Halves(samples) => samples.len(),
+            Self::Floats(samples) => samples.len(),
+        }
+    }
+
+    /// Bytes on the heap.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Bytes(samples) => samples.len(),
+            Self::Halves(samples) => samples.len() * 2,
+            Self::Floats(samples) => samples.len() * 4,
+        }
+    }
+}
+
+/// What the 256 levels of a byte stand for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Levels {
+    /// Of colours; rises.
+    color: [f32; 256],
+}
+
+impl Levels {
+    /// By a curve from a level between 0 and 1 to light.
+    pub fn new(decode: impl Fn(f64) -> f64) -> Self {
+        Self { color: std::array::from_fn(|level| decode(level as f64 / 255.0) as f32) }
+    }
+
+    /// The light of a level.
+    #[inline]
+    pub fn light(&self, level: u8) -> f32 {
+        self.color[usize::from(level)]
+    }
+
+    /// The level whose light is nearest.
+    pub fn nearest(&self, light: f32) -> u8 {
+        let above = self.color.partition_point(|entry| *entry < light).min(255);
+        let below = above.saturating_sub(1);
+        let closer = light - self.color[below] < self.color[above] - light;
+        (if closer { below } else { above }) as u8
+    }
+}
+
+/// The alpha of a level: a share, by no curve.
+#[inline]
+pub fn share(level: u8) -> f32 {
+    f32::from(level) / 255.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::color::srgb_decode_f64;
+
+    #[test]
+    fn levels_go_round_and_others_go_to_the_nearest() {
+        for levels in [Levels::new(srgb_decode_f64), Levels::new(|level| level)] {
+            for level in 0..=255u8 {
+                assert_eq!(levels.nearest(levels.light(level)), level);
+            }
+            for i in -10..1010 {
+                let light = i as f32 / 1000.0;
+                let off = |level: u8| (levels.light(level) - light).abs();
+                let best = (0..=255u8).map(off).fold(f32::MAX, f32::min);
+                assert_eq!(off(levels.nearest(light)), best, "{light}");
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_take_no_more_than_they_need() {
+        assert_eq!(
+            Texels::of_numbers(vec![1.0, -0.5, 65_504.0, f32::NAN]),
+            Texels::Halves(vec![0x3c00, 0xb800, 0x7bff, 0])
+        );
+        assert_eq!(Texels::of_numbers(vec![1.0, 0.1]), Texels::Floats(vec![1.0, 0.1]));
+        assert_eq!(Texels::of_numbers(vec![f32::INFINITY, -f32::INFINITY]), Texels::Floats(vec![1e30, -1e30]));
+        assert_eq!((Texels::Halves(vec![0; 3]).bytes(), Texels::Floats(vec![0.0; 3]).bytes()), (6, 12));
+    }
+}
