@@ -85,6 +85,12 @@ impl Phong {
         fresnel: false,
     };
 
+    /// Factor on what the scene's lights bring along paths: as much as they bring in classic pictures, where one of
+    /// radiance 1 makes a white surface white; 1 where `diffuse` has a factor 1/π.
+    pub fn lamp_scale(&self) -> f32 {
+        std::f32::consts::PI / self.albedo_scale
+    }
+
     /// The same surface for light that is followed path by path: `diffuse` (times `albedo_scale`) is Lambert's albedo,
     /// the highlight a lobe of the same exponent that gives back `specular` head on, mirror and transparency are deltas.
     /// A glossy mirror is a rough one of about the same spread, glossy or blurry glass with `fresnel` rough glass; blurry

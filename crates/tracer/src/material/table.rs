@@ -2,7 +2,7 @@
 
 use super::shade::facing_normal;
 use super::{Compiled, Glow, MaterialId, Shade, View, lookup};
-use crate::bsdf::{Bsdf, Phong as PhongLobe};
+use crate::bsdf::Phong as PhongLobe;
 use crate::medium::{Interior, InteriorId};
 use crate::surface::Surface;
 use crate::texture::TextureTable;
@@ -173,9 +173,9 @@ impl MaterialTable {
     }
 
     /// The classic material as physics would have it.
-    fn classic(lobe: &PhongLobe, _view: &View, shade: Shade) -> Shade {
-        let bsdf: Bsdf = crate::bsdf::Lambert { albedo: lobe.diffuse }.into();
-        Shade { emission: shade.emission + lobe.emission, bsdf, lamp_scale: std::f32::consts::PI, ..shade }
+    fn classic(lobe: &PhongLobe, view: &View, shade: Shade) -> Shade {
+        let bsdf = lobe.bsdf(view.is_outside());
+        Shade { emission: shade.emission + lobe.emission, bsdf, lamp_scale: lobe.lamp_scale(), ..shade }
     }
 
     /// What a shadow ray of the classic integrator keeps when it crosses material `id` at this point: its

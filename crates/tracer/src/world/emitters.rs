@@ -3,6 +3,7 @@
 use super::areas::{Areas, NOWHERE};
 use super::glowing::Glowing;
 use super::{Lamp, Vertex, World};
+use crate::background::AnyBackground;
 use crate::emitter::{AreaEmitter, LightBounds, LightTree};
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 
@@ -12,8 +13,8 @@ pub(super) struct Emitters {
     /// Over `finite`, in order.
     tree: LightTree,
     finite: Vec<Emitter>,
-    /// Numbers of the lamps that have no place.
-    far: Vec<u32>,
+    /// Those that have no place.
+    far: Vec<Far>,
     /// The shapes that shine, by number.
     shapes: Vec<Shining>,
 }
@@ -37,6 +38,15 @@ enum Emitter {
     Area(Box<AreaEmitter>, u32),
     /// The shape at that place as a whole.
     Shape(u32),
+}
+
+/// Something without a place that gives off light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Far {
+    /// A light of the scene, by number.
+    Lamp(u32),
+    /// What lies behind everything.
+    Background,
 }
 
 /// Light from one place of an emitter that was picked.
@@ -68,17 +78,21 @@ pub struct Receiver {
 }
 
 impl Emitters {
-    pub fn new(lamps: &[Lamp], mut glowing: Vec<Glowing>) -> Self {
+    /// Lamps, shapes, and the background; `radius` is that of a ball around everything that has an end.
+    pub fn new(lamps: &[Lamp], mut glowing: Vec<Glowing>, background: &AnyBackground, radius: f32) -> Self {
         let mut emitters = Self::default();
         let mut bounds: Vec<LightBounds> = Vec::new();
         for (number, lamp) in (0..).zip(lamps) {
-            match lamp.bounds() {
+            match lamp.bounds(radius) {
                 Some(of_lamp) => {
                     emitters.finite.push(Emitter::Lamp(number));
                     bounds.push(of_lamp);
                 }
-                None => emitters.far.push(number),
+                None => emitters.far.push(Far::Lamp(number)),
             }
+        }
+        if !background.mean().is_black() {
+            emitters.far.push(Far::Background);
         }
         glowing.sort_by_key(|shape| shape.number);
         for shape in glowing {
@@ -93,7 +107,7 @@ impl Emitters {
         let areas = shape.still().and_then(|transform| Areas::of(shape.shape(), transform));
         let parts = if let Some(Areas { surfaces, parts }) = areas {
             for surface in surfaces {
-                bounds.push(surface.light_bounds(shape.power(surface.area()), shape.is_two_sided()));
+                bounds.push(surface.light_bounds(shape.luminance(), shape.is_two_sided()));
                 self.finite.push(Emitter::Area(Box::new(surface), place));
             }
             parts
@@ -142,8 +156,10 @@ impl World {
         if u.x < far {
             let place = (u.x / emitters.far_chance()).min(emitters.far.len() as f32 - 0.5);
             let rest = Vec2::new((place - place.floor()).min(1f32.next_down()), u.y);
-            let number = *emitters.far.get(place as usize)?;
-            return self.lamp_light(number, to, rest, emitters.far_chance());
+            return match *emitters.far.get(place as usize)? {
+                Far::Lamp(number) => self.lamp_light(number, to, rest, emitters.far_chance()),
+                Far::Background => self.background_light(rest, emitters.far_chance()),
+            };
         }
         let near = emitters.near_chance();
         let pick = emitters.tree.sample(to.point, to.normal, ((u.x - far) / near).min(1f32.next_down()))?;
@@ -172,6 +188,19 @@ impl World {
             can_be_met: false,
             is_lamp: true,
         })
+    }
+
+    fn background_light(&self, u: Vec2, chance: f32) -> Option<Lighting> {
+        let sample = self.background.sample(u).filter(|sample| !sample.radiance.is_black())?;
+        Some(met(sample.wi, f32::INFINITY, sample.radiance, sample.pdf * chance))
+    }
+
+    /// Density per steradian with which [`World::sample_light`] picks a direction in which a ray left the world.
+    pub fn background_pdf(&self, direction: Vec3) -> f32 {
+        if !self.emitters.far.contains(&Far::Background) {
+            return 0.0;
+        }
+        self.background.pdf(direction) * self.emitters.far_chance()
     }
 
     /// Density per steradian with which [`World::sample_light`] picks, for the place `from`, where `ray` met `vertex`.

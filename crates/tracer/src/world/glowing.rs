@@ -46,16 +46,16 @@ impl Glowing {
         self.glow.sides == Sides::Both
     }
 
-    /// What a part of it gives off in all, by its area; of a textured one as if it were white.
-    pub fn power(&self, area: f32) -> f32 {
-        let light = self.glow.radiance.unwrap_or(Rgb::WHITE).luminance();
-        PI * area * light * if self.is_two_sided() { 2.0 } else { 1.0 }
+    /// Luminance of what it gives off; of a textured one as if it were white.
+    pub fn luminance(&self) -> f32 {
+        self.glow.radiance.unwrap_or(Rgb::WHITE).luminance()
     }
 
     /// What the light tree needs to know of it as a whole.
     pub fn bounds(&self) -> LightBounds {
         let stretch = self.motion.at(0.0).max_stretch();
-        let power = self.power(self.shape.area() * stretch * stretch);
+        // As if all of it were seen at once.
+        let power = 4.0 * PI * self.shape.area() * stretch * stretch * self.luminance();
         // Whatever its form: normals may stand everywhere.
         let bounds = self.motion.aabb(&self.shape.bounds());
         let two_sided = self.is_two_sided();

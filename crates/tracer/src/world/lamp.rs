@@ -2,7 +2,7 @@
 
 use crate::emitter::LightBounds;
 use crate::light::AnyLight;
-use juggler_math::{Aabb, Rgb, Vec3};
+use juggler_math::{Rgb, Vec3};
 
 /// A light, still or moving.
 #[derive(Clone, Debug)]
@@ -48,23 +48,21 @@ impl Lamp {
         }
     }
 
-    /// What the light tree needs to know, over all its time; `None` for one without a place.
-    pub fn bounds(&self) -> Option<LightBounds> {
+    /// What the light tree needs to know, over all its time; `None` for one without a place. `world_radius` bounds the
+    /// scene.
+    pub fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
         let all = || std::iter::once(&self.first).chain(&self.others);
         let mut bounds: Option<LightBounds> = None;
         for source in all() {
-            let (centre, radius) = source.ball?;
-            let ball = Aabb { min: centre - radius, max: centre + radius };
-            let power = source.light.power(1.0);
-            let (bounds_of_all, most) = bounds.map_or((ball, power), |b| (b.bounds.union(ball), b.power.max(power)));
-            bounds = Some(LightBounds {
-                bounds: bounds_of_all,
+            let next = source.light.bounds(world_radius)?;
+            bounds = Some(bounds.map_or(next, |before| LightBounds {
+                bounds: before.bounds.union(next.bounds),
+                power: before.power.max(next.power),
+                // It may have turned.
                 axis: Vec3::Z,
                 cos_theta_o: -1.0,
-                cos_theta_e: 0.0,
-                power: most,
-                two_sided: false,
-            });
+                ..next
+            }));
         }
         bounds
     }

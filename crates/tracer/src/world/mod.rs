@@ -65,6 +65,12 @@ impl WorldHit {
     }
 }
 
+/// Of a ball around everything that has an end; 1 where nothing has.
+fn radius(bounds: &Aabb) -> f32 {
+    let radius = 0.5 * bounds.extent().length();
+    if radius > 0.0 && radius < f32::INFINITY { radius } else { 1.0 }
+}
+
 /// A point where a path touches the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
@@ -111,7 +117,7 @@ impl World {
         let ambient = lamps.iter().fold(Rgb::BLACK, |sum, lamp| sum + lamp.ambient);
         lamps.retain(|lamp| lamp.ambient.is_black());
         let moves = top.moves() || lamps.iter().any(Lamp::moves);
-        let emitters = Emitters::new(&lamps, Glowing::all(&top, &materials));
+        let emitters = Emitters::new(&lamps, Glowing::all(&top, &materials), &background, radius(&top.bounds()));
         Self { top, materials, lamps, ambient, background, emitters, has_transparency, has_holes, has_media, moves }
     }
 

@@ -80,8 +80,10 @@ impl AreaEmitter {
         }
     }
 
-    /// Its bounds in a light tree, when it emits this power in all.
-    pub fn light_bounds(&self, power: f32, two_sided: bool) -> LightBounds {
+    /// Its bounds in a light tree, when every place has this radiance (its luminance).
+    pub fn light_bounds(&self, radiance: f32, two_sided: bool) -> LightBounds {
+        let seen = if matches!(self, Self::Sphere(_)) { 0.25 * self.area() } else { self.area() };
+        let power = 4.0 * std::f32::consts::PI * seen * radiance;
         let (bounds, axis, cos_theta_o) = match self {
             Self::Sphere(sphere) => (sphere.bounds(), Vec3::Z, -1.0),
             Self::Disk(disk) => (disk.bounds(), disk.normal(), 1.0),

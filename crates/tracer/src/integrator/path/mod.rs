@@ -119,7 +119,8 @@ impl Integrator for Path {
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
         if !self.flies(world, ray, f32::INFINITY, path, emit) {
-            emit.add(world.background(ray));
+            let light = || world.background_pdf(ray.direction);
+            emit.add(world.background(ray) * path.trail.weight(light));
         }
     }
 
