@@ -1,6 +1,6 @@
 //! What is in a mesh file, what of it was left out or repaired, and how long it took to load.
 
-use super::{bounds_in_words, corners, memory_in_words, row};
+use super::{bounds_in_words, corners, row};
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::math::Aabb;
@@ -73,7 +73,10 @@ impl<'n> Report<'n> {
             row("vertices", &self.vertices.to_string()),
             row("with", if carried.is_empty() { "positions only" } else { &carried }),
             row("bounds", &bounds_in_words(&self.bounds)),
-            row("memory", &memory_in_words(self.geometry_bytes, self.bvh_bytes)),
+            row(
+                "memory",
+                &format!("{} shapes, {} tree", bytes(self.geometry_bytes as u64), bytes(self.bvh_bytes as u64)),
+            ),
             row("file", &format!("{}, loaded in {:.3} s ({speed:.0} MB/s)", bytes(self.file_bytes), self.load)),
             row("tree", &format!("built in {:.3} s", self.build)),
         ];
