@@ -111,7 +111,7 @@ impl Dielectric {
 
     /// L of light along `w`, for the index behind the border over that in front.
     fn lost(&self, w: Vec3, ior: f32) -> f32 {
-        energy::dielectric_loss(w.z.abs(), self.ggx.alpha_towards(w), ior)
+        energy::dielectric_loss(self.ggx.round_cos(w), self.ggx.mean_alpha(), ior)
     }
 
     fn multiple(&self, wo: Vec3, ior: f32) -> Multiple {
@@ -251,13 +251,12 @@ impl Dielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.alpha_towards(wo));
+        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.mean_alpha());
         if self.is_smooth() {
             let share = if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) };
             return self.reflection * share + self.transmission * (Rgb::WHITE - share);
         }
-        let (mut mirrored, lost) =
-            (energy::dielectric_mirrored(cos, alpha, ior), energy::dielectric_loss(cos, alpha, ior));
+        let (mut mirrored, lost) = (energy::dielectric_mirrored(cos, alpha, ior), self.lost(wo, ior));
         let mut through = 1.0 - mirrored - lost;
         if self.compensated {
             let multiple = self.multiple(wo, ior);

@@ -62,9 +62,9 @@ pub(super) fn examples() -> Vec<Example> {
     all
 }
 
-/// How far a compensated lobe may miss white: brushed ones are compensated by one alpha for both axes.
+/// How far a compensated lobe may miss white: brushed ones are compensated as if stretched.
 fn within(alpha: Vec2) -> f32 {
-    if alpha.x == alpha.y { 0.02 } else { 0.15 }
+    if alpha.x == alpha.y { 0.02 } else { 0.1 }
 }
 
 fn conductors(alpha: Vec2) -> Vec<Example> {
