@@ -6,7 +6,8 @@
 //! the direction, light that is lost comes out on its own side as (1 - b) L(μo) L(μi) / (π L̄), and on the other as
 //! c T̄o Lo(μo) Li(μi) / (π L̄o L̄i), where b = c T̄ / L̄ on each side. As T̄o = η² T̄i (with η the index on the side of i over
 //! that on the side of o), that is reciprocal for any c; we take the largest that gives neither side more than what
-//! it transmits of what it scatters once.
+//! it transmits of what it scatters once. Tables are those of surfaces that are equally rough along both axes: brushed glass
+//! (10 : 1) misses white by up to 0.15 where it is seen from within at a grazing angle.
 
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta, one_of_two, sum};

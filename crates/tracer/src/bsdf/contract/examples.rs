@@ -92,7 +92,11 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
         all.push(narrow(Example::new(format!("dielectric {ior} {alpha}"), Dielectric::new(ior, alpha))));
         let compensated = Example::new(format!("compensated dielectric {ior} {alpha}"), compensated);
         // At 1.01 the critical angle grazes; there the tables are too coarse for white.
-        all.push(narrow(compensated.white(within(alpha) * if ior == 1.01 { 0.0 } else { 1.0 })));
+        all.push(narrow(
+            compensated.white(
+                within(alpha) * if alpha.x == alpha.y { 1.0 } else { 1.5 } * if ior == 1.01 { 0.0 } else { 1.0 },
+            ),
+        ));
     }
     all.push(Example::new(format!("thin {alpha}"), ThinDielectric::new(1.5, alpha).tinted(pink, cyan)));
     let thin = ThinDielectric::compensated(1.5, alpha);
