@@ -8,6 +8,7 @@ use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Rgb, Vec2};
 use std::borrow::Cow;
 
+mod differential;
 mod geometry;
 mod items;
 mod lamp;
@@ -21,6 +22,7 @@ mod precision;
 #[cfg(test)]
 mod tests;
 
+pub use differential::Differential;
 pub use geometry::Geometry;
 pub use juggler_bvh::{SimdLevel, simd_levels};
 pub use lamp::{Lamp, Source};
