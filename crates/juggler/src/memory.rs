@@ -2,7 +2,7 @@
 
 use crate::{Error, Picture, Settings};
 use juggler_scene::Scene;
-use juggler_scene::compile::{Needs, estimate_picture};
+use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
 use juggler_scene::import;
 use juggler_tracer::film::{Film, Rect, TILE};
 use juggler_tracer::render::{self, BAND_PIXELS};
@@ -86,8 +86,9 @@ impl Memory {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the mesh `{name}`"), estimate.kept));
         }
-        for file in &needs.pictures {
-            let estimate = estimate_picture(file);
+        let pictures = needs.pictures.iter().map(|file| (file, estimate_picture(file)));
+        let panoramas = needs.panoramas.iter().map(|file| (file, estimate_panorama(file)));
+        for (file, estimate) in pictures.chain(panoramas) {
             most = most.max(estimate.peak.saturating_sub(estimate.kept));
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the picture `{name}`"), estimate.kept));
@@ -115,6 +116,7 @@ impl Memory {
         self.world.extend(world);
         self.world.push(part("trees", geometry.bvh_bytes as u64));
         self.world.push(part("textures", geometry.texture_bytes as u64));
+        self.world.push(part("the background", geometry.background_bytes as u64));
         self.building.clear();
         self
     }

@@ -1,11 +1,11 @@
 //! What decides a scene's pixels, by name: two scenes with the same fingerprint give the same picture for the same
 //! samples, and of two that differ it says in what.
 //!
-//! It covers the resolved description and the contents of mesh and picture files. It does not cover titles, cameras that are not
+//! It covers the resolved description and the contents of the files that it names. It does not cover titles, cameras that are not
 //! looked through and the names of cameras, how long the animation is, the tone curve (pixels are linear), and how many
 //! samples are taken: a picture that is extended to more samples stays the same picture.
 
-use crate::compile::{Files, pictures};
+use crate::compile::{Files, light_files, pictures};
 use crate::description::{Description, Object};
 use crate::path::Path;
 use juggler_tracer::camera::AnyCamera;
@@ -122,12 +122,14 @@ fn digest(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex()[..32].to_owned()
 }
 
-/// The mesh and picture files that a scene names, with the hashes of their contents.
+/// The mesh, picture and photometric files that a scene names, with the hashes of their contents.
 pub(crate) fn digests(scene: &Description, files: &Files<'_>) -> Vec<(PathBuf, [u8; 32])> {
     let meshes = mesh_files(scene, files).into_iter().map(|file| (files.library.digest(&file), file));
     let pictures = pictures(scene, files).into_iter();
     let pictures = pictures.map(|(file, space)| (files.library.picture_digest(&file, space), file));
-    meshes.chain(pictures).map(|(hash, file)| (file, hash)).collect()
+    let lights = light_files(scene, files).into_iter();
+    let lights = lights.map(|(file, purpose)| (files.library.light_digest(&file, purpose), file));
+    meshes.chain(pictures).chain(lights).map(|(hash, file)| (file, hash)).collect()
 }
 
 /// The mesh files that a scene names, each once.

@@ -1,6 +1,6 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::compile::{self, Assembly, Compiled, Files, Library, Needs, pictures};
+use crate::compile::{self, Assembly, Compiled, Files, Library, Needs, light_files, pictures};
 use crate::description::{Animation, Backdrop, Description, Object};
 use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
@@ -72,7 +72,7 @@ pub struct Scene {
     pub description: Description,
     /// Where it was read from.
     origin: Option<Arc<Origin>>,
-    /// Mesh and picture files that were loaded, for copies of this scene and its other frames.
+    /// Files that were loaded, for copies of this scene and its other frames.
     library: Library,
 }
 
@@ -130,7 +130,7 @@ impl Scene {
         }
     }
 
-    /// Reads the file again, and of its meshes and pictures those that have changed.
+    /// Reads the file again, and of the files that it names those that have changed.
     pub fn reload(&self, path: impl AsRef<Path>) -> Result<Self, SceneError> {
         Self::read(path.as_ref(), self.library.renewed())
     }
@@ -207,7 +207,7 @@ impl Scene {
         Ok(Compiled { world, cameras, course, settings, warnings })
     }
 
-    /// Whether the same stands in both, however it is looked at. Mesh and picture files are compared by their contents.
+    /// Whether the same stands in both, however it is looked at. Files are compared by their contents.
     pub fn has_world_of(&self, other: &Self) -> bool {
         let (a, b) = (&self.description, &other.description);
         let same_motion = || {
@@ -231,12 +231,13 @@ impl Scene {
         }
     }
 
-    /// The files that it was read from, and those of its meshes and pictures.
+    /// The files that it was read from, and those of its meshes, pictures and lights.
     pub fn paths(&self) -> Vec<PathBuf> {
         let texts = self.origin.iter().flat_map(|origin| origin.document.sources.names());
-        let pictures = pictures(&self.description, &self.files()).into_iter().map(|(file, _)| file);
-        let files: BTreeSet<PathBuf> =
-            mesh_files(&self.description, &self.files()).into_iter().chain(pictures).collect();
+        let (scene, files) = (&self.description, self.files());
+        let pictures = pictures(scene, &files).into_iter().map(|(file, _)| file);
+        let lights = light_files(scene, &files).into_iter().map(|(file, _)| file);
+        let files: BTreeSet<PathBuf> = mesh_files(scene, &files).into_iter().chain(pictures).chain(lights).collect();
         texts.map(PathBuf::from).chain(files).collect()
     }
 

@@ -7,14 +7,15 @@ use juggler_tracer::world::Lamp;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::sync::Arc;
 
 /// In so many parts of the time that the shutter is open, a light that changes is as it is in their middles.
 const PARTS: usize = 256;
 
 /// The lights; those that are not the same at all `moments` change from one to the next.
-pub fn lamps(scene: &Description, moments: &[Description]) -> Vec<Lamp> {
+pub fn lamps(lights: &[AnyLight], moments: &[Vec<AnyLight>]) -> Vec<Lamp> {
     let lamp = |(i, light): (usize, &AnyLight)| {
-        let keys: Option<Vec<&AnyLight>> = moments.iter().map(|moment| moment.lights.get(i)).collect();
+        let keys: Option<Vec<&AnyLight>> = moments.iter().map(|moment| moment.get(i)).collect();
         let keys = keys.filter(|keys| keys.iter().any(|key| *key != light)).unwrap_or_default();
         let mut parts = (0..if keys.is_empty() { 0 } else { PARTS }).map(|part| at_part(&keys, part, light));
         match parts.next() {
@@ -22,14 +23,20 @@ pub fn lamps(scene: &Description, moments: &[Description]) -> Vec<Lamp> {
             None => Lamp::from(light.clone()),
         }
     };
-    scene.lights.iter().enumerate().map(lamp).collect()
+    lights.iter().enumerate().map(lamp).collect()
 }
 
 fn at_part(keys: &[&AnyLight], part: usize, otherwise: &AnyLight) -> AnyLight {
     let place = (part as f64 + 0.5) / PARTS as f64 * (keys.len() - 1) as f64;
     let key = place as usize;
     let (Some(from), Some(to)) = (keys.get(key), keys.get(key + 1)) else { return otherwise.clone() };
-    between(*from, *to, place - key as f64).unwrap_or_else(|| (*from).clone())
+    let mut from = (*from).clone();
+    let Some(mut light) = between(&from, *to, place - key as f64) else { return from };
+    // What its file holds is not part of its description; the file is the same.
+    if let (Some(to), Some(profile)) = (light.ies(), from.ies().and_then(|ies| ies.profile())) {
+        to.set_profile(Arc::clone(profile));
+    }
+    light
 }
 
 /// The camera that is looked through, at the moments; nothing when it is the same at all, or not the scene's.
@@ -73,12 +80,12 @@ fn go(value: &mut Value, to: &Value, share: f64) -> Option<()> {
 mod tests {
     use super::*;
 
-    fn scene(x: f64, intensity: f64, samples: u32) -> Description {
+    fn lights(x: f64, intensity: f64, samples: u32) -> Vec<AnyLight> {
         let lights = format!(
             r#"[{{"point": {{"position": [{x}, 1, 0], "intensity": {intensity}, "samples": {samples}}}}},
                 {{"ambient": {{"intensity": {intensity}}}}}]"#
         );
-        Description { lights: serde_json::from_str(&lights).unwrap(), ..Description::default() }
+        serde_json::from_str(&lights).unwrap()
     }
 
     fn place(lamp: &Lamp, time: f32) -> f32 {
@@ -90,16 +97,16 @@ mod tests {
 
     #[test]
     fn lights_go_from_moment_to_moment() {
-        let moments = [scene(0.0, 1.0, 2), scene(4.0, 2.0, 2), scene(4.0, 3.0, 2)];
+        let moments = [lights(0.0, 1.0, 2), lights(4.0, 2.0, 2), lights(4.0, 3.0, 2)];
         let all = lamps(&moments[1], &moments);
         for (time, x) in [(0.0, 0.0), (0.25, 2.0), (0.5, 4.0), (0.99, 4.0)] {
             assert!((place(&all[0], time) - x).abs() < 0.02, "{time}");
         }
         assert!(all[0].moves() && all[1].moves());
-        let still = lamps(&moments[0], &[scene(0.0, 1.0, 2), scene(0.0, 1.0, 2)]);
+        let still = lamps(&moments[0], &[lights(0.0, 1.0, 2), lights(0.0, 1.0, 2)]);
         assert!(!still[0].moves() && place(&still[0], 0.5) == 0.0);
         assert!(!lamps(&moments[0], &[])[0].moves());
-        let counts = lamps(&moments[0], &[scene(0.0, 1.0, 2), scene(2.0, 1.0, 5)]);
+        let counts = lamps(&moments[0], &[lights(0.0, 1.0, 2), lights(2.0, 1.0, 5)]);
         assert!((place(&counts[0], 0.5) - 1.0).abs() < 0.01);
     }
 }

@@ -1,6 +1,7 @@
-//! The files of a scene: meshes (and, in [`super::images`], pictures), each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
+//! The files of a scene: meshes (pictures in [`super::images`], what light comes from in [`super::lighting`]), each loaded, prepared and hashed once, shared by all objects, frames and copies of a scene.
 
 use super::images::Pictures;
+use super::lighting::Lighting;
 use crate::document::{Node, Sources};
 use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
@@ -13,12 +14,13 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-/// The meshes and pictures that were loaded so far.
+/// The files that were loaded so far.
 #[derive(Clone, Debug, Default)]
 pub struct Library {
     store: Store,
     entries: Arc<Mutex<BTreeMap<PathBuf, Arc<Entry>>>>,
     pictures: Pictures,
+    lighting: Lighting,
 }
 
 /// A mesh file.
@@ -53,13 +55,18 @@ impl Library {
         &self.pictures
     }
 
+    pub(super) fn lighting(&self) -> &Lighting {
+        &self.lighting
+    }
+
     /// A library that reads those files again that have changed.
     pub fn renewed(&self) -> Self {
         let same = |path: &PathBuf, entry: &Entry| entry.state.is_some() && entry.state == state(path);
         let entries = self.entries();
         let kept = entries.iter().filter(|(path, entry)| same(path, entry));
         let kept = kept.map(|(path, entry)| (path.clone(), Arc::clone(entry))).collect();
-        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), pictures: self.pictures.renewed() }
+        let (pictures, lighting) = (self.pictures.renewed(), self.lighting.renewed());
+        Self { store: self.store.clone(), entries: Arc::new(Mutex::new(kept)), pictures, lighting }
     }
 
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.

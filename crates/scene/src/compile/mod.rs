@@ -14,16 +14,20 @@ mod count;
 mod course;
 mod defaults;
 mod images;
+mod lighting;
 mod locate;
 mod materials;
 mod meshes;
 mod needs;
 mod placing;
 mod settings;
+mod shelf;
 
 pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub(crate) use images::pictures;
 pub use images::{Estimate, MAX_SIDE, MAX_TEXELS, estimate as estimate_picture};
+pub(crate) use lighting::files as light_files;
+pub use lighting::{Purpose, estimate as estimate_panorama};
 pub use locate::Part;
 pub use meshes::{Files, Library};
 pub use needs::Needs;
@@ -80,7 +84,9 @@ impl Assembly {
     pub fn of(scene: &Description, moments: &[Description], files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
         settings::check(&scene.render, &mut findings);
-        settings::check_light(scene, &mut findings);
+        let sources = lighting::lights(&scene.lights, files, &mut findings);
+        settings::check_lights(scene, &sources, &mut findings);
+        let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
         let objects = match count::count(scene) {
             Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
@@ -93,11 +99,12 @@ impl Assembly {
         let bounds = bounds(&objects);
         let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
         let lights = if lit {
-            course::lamps(scene, moments)
+            // What is wrong with files has been said.
+            let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
+            course::lamps(&sources, &moments.iter().map(loaded).collect::<Vec<_>>())
         } else {
             defaults::lights(&bounds).into_iter().map(Lamp::from).collect()
         };
-        let background = scene.background.clone().map(AnyBackground::from);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut findings);
         (Self { objects, materials, lights, background, cameras, course }, findings)

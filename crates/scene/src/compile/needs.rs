@@ -2,6 +2,7 @@
 
 use super::count::{count, stored};
 use super::images::pictures;
+use super::lighting::{self, Purpose};
 use super::meshes::Files;
 use crate::description::{Description, Object};
 use crate::path::Trail;
@@ -19,6 +20,8 @@ pub struct Needs {
     pub files: BTreeSet<PathBuf>,
     /// Picture files that exist, each once.
     pub pictures: BTreeSet<PathBuf>,
+    /// Pictures of everything around that exist, each once.
+    pub panoramas: BTreeSet<PathBuf>,
     /// Triangles of meshes that stand in the scene itself.
     pub triangles: u64,
     /// Objects that are stored, those of groups that are stored once counted once.
@@ -39,6 +42,8 @@ impl Needs {
         let mut needs = Self { text, objects, shadows, ..Self::default() };
         let pictures = pictures(scene, &files).into_iter();
         needs.pictures = pictures.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
+        let panoramas = lighting::files(scene, &files).into_iter().filter(|(_, purpose)| *purpose == Purpose::Panorama);
+        needs.panoramas = panoramas.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
         scene.materials.values().for_each(|material| needs.material(material));
         let groups = Trail::Root.key("groups");
         scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));

@@ -1,8 +1,9 @@
-//! Numbers that only here are known to be too many, and lights and backgrounds that cannot be.
+//! Numbers that only here are known to be too many, and lights that cannot be.
 
-use crate::description::{Backdrop, Description, Render};
+use crate::description::{Description, Render};
 use crate::path::Path;
 use crate::report::Finding;
+use juggler_tracer::light::AnyLight;
 
 /// Longest edge of a picture.
 pub const MAX_EDGE: u32 = 65_536;
@@ -37,24 +38,23 @@ pub fn check(render: &Render, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Checks lights and background, and warns of lights without light.
-pub fn check_light(scene: &Description, findings: &mut Vec<Finding>) {
+/// Checks the lights of a scene, their files loaded, and warns of those without light.
+pub fn check_lights(scene: &Description, lights: &[AnyLight], findings: &mut Vec<Finding>) {
     // In an animation a light may be off for a while.
     let still = scene.animation.frames == 1;
-    for (i, light) in scene.lights.iter().enumerate() {
+    for (i, light) in lights.iter().enumerate() {
         let path = Path::root().key("lights").index(i);
         if let Err(invalid) = light.check() {
             let path = path.key(crate::kind::name_of(light)).join(invalid.field);
             findings.push(Finding::error(invalid.message).at(&path));
-        } else if still && light.power(1.0) == 0.0 && light.ambient().is_black() {
+        } else if still && is_loaded(light) && light.power(1.0) == 0.0 && light.ambient().is_black() {
             let warning = Finding::warning("this light gives no light").at(&path);
             findings.push(warning.help("raise its `intensity` or `color`, or remove it"));
         }
     }
-    if let Some(Backdrop::Kind(background)) = &scene.background
-        && let Err(invalid) = background.check()
-    {
-        let path = Path::root().key("background").key(crate::kind::name_of(background)).join(invalid.field);
-        findings.push(Finding::error(invalid.message).at(&path));
-    }
+}
+
+/// Whether it has what its file holds, if there is one.
+fn is_loaded(light: &AnyLight) -> bool {
+    light.clone().ies().is_none_or(|ies| ies.profile().is_some())
 }

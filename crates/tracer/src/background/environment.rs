@@ -37,9 +37,12 @@ pub struct Environment {
     #[serde(default = "up")]
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// What [`Environment::load`] makes of the picture: clones share it.
+    /// The picture that [`Environment::set_panorama`] was given: clones share it.
     #[serde(skip)]
     panorama: Option<Arc<Panorama>>,
+    /// What [`Background::prepare`] makes of the numbers.
+    #[serde(skip)]
+    orientation: Orientation,
 }
 
 fn one() -> f32 {
@@ -50,13 +53,15 @@ fn up() -> Vec3 {
     Vec3::Y
 }
 
+/// A picture of all directions, with what directions are picked from. Costly to make, free to share.
 #[derive(Clone, PartialEq)]
-struct Panorama {
+pub struct Panorama {
     image: Image,
     directions: Directions,
-    orientation: Orientation,
-    /// Mean over all directions, not scaled.
+    /// Mean over all directions.
     mean: Rgb,
+    /// The greatest channel of any pixel.
+    greatest: f32,
 }
 
 impl fmt::Debug for Panorama {
@@ -66,30 +71,40 @@ impl fmt::Debug for Panorama {
 }
 
 impl Environment {
-    /// One whose picture is to be given to [`Environment::load`].
+    /// One whose picture is to be given to [`Environment::set_panorama`].
     pub fn from_file(file: impl Into<String>) -> Self {
-        Self { file: file.into(), scale: 1.0, rotation_degrees: 0.0, up: Vec3::Y, panorama: None }
+        let (panorama, orientation) = (None, Orientation::default());
+        Self { file: file.into(), scale: 1.0, rotation_degrees: 0.0, up: Vec3::Y, panorama, orientation }
     }
 
-    /// Takes what the file holds. Light that is negative or no number counts as none. An error when there are no
-    /// pixels, or some are infinite.
-    pub fn load(&mut self, mut image: Image) -> Result<(), InvalidBackground> {
-        let invalid = |message: String| Err(InvalidBackground { field: "file", message });
+    /// Takes what the file holds, to be [prepared](Background::prepare) then.
+    pub fn set_panorama(&mut self, panorama: Arc<Panorama>) {
+        self.panorama = Some(panorama);
+    }
+}
+
+impl Panorama {
+    /// Of a picture: its first row is up, +Y. Light that is negative or no number counts as none. When there are no
+    /// pixels, or some are infinite, what is wrong with it.
+    pub fn new(mut image: Image) -> Result<Self, &'static str> {
         let light = |v: f32| if v > 0.0 { v } else { 0.0 };
         image.pixels_mut().iter_mut().for_each(|pixel| *pixel = pixel.map(light));
-        if image.pixels().iter().any(|pixel| !pixel.is_finite()) {
-            return invalid(format!("`file` \"{}\" has pixels without end", self.file));
+        let greatest = image.pixels().iter().fold(0.0, |most: f32, pixel| most.max(pixel.max_channel()));
+        if greatest == f32::INFINITY {
+            return Err("has pixels without end");
         }
         let rows = image.height() as usize;
         let borders = Directions::equal_angles(rows.max(1));
         let mean = mean(&image, &borders);
         let brightness = brightness(&image, mean.luminance());
-        let Some(directions) = Directions::new(image.width() as usize, borders, &brightness) else {
-            return invalid(format!("`file` \"{}\" has no pixels", self.file));
-        };
-        let orientation = Orientation::new(self.up, self.rotation_degrees);
-        self.panorama = Some(Arc::new(Panorama { image, directions, orientation, mean }));
-        Ok(())
+        let directions = Directions::new(image.width() as usize, borders, &brightness).ok_or("has no pixels")?;
+        Ok(Self { image, directions, mean, greatest })
+    }
+
+    /// Bytes on the heap of one of so many pixels.
+    pub const fn bytes(pixels: usize) -> usize {
+        // A pixel's colour, and for its cell a density and a sum.
+        pixels.saturating_mul(size_of::<Rgb>() + 2 * size_of::<f32>())
     }
 }
 
@@ -156,25 +171,27 @@ impl Background for Environment {
             let message = format!("the picture \"{}\" was not read", self.file);
             return Err(InvalidBackground { field: "file", message });
         };
-        let most = panorama.image.pixels().iter().fold(0.0, |most: f32, pixel| most.max(pixel.max_channel()));
-        in_range("scale", self.scale, 0.0, if most > 1.0 { f32::MAX / most } else { f32::MAX })
+        let most = panorama.greatest;
+        in_range("scale", self.scale, 0.0, if most > 1.0 { f32::MAX / most } else { f32::MAX })?;
+        self.orientation = Orientation::new(self.up, self.rotation_degrees);
+        Ok(())
     }
 
     fn radiance(&self, ray: &Ray) -> Rgb {
         let Some(panorama) = &self.panorama else { return Rgb::BLACK };
-        panorama.at(panorama.orientation.to_local(ray.direction)) * self.scale
+        panorama.at(self.orientation.to_local(ray.direction)) * self.scale
     }
 
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
         let panorama = self.panorama.as_ref()?;
         let (local, pdf) = panorama.directions.sample(u)?;
-        let wi = panorama.orientation.to_world(local);
+        let wi = self.orientation.to_world(local);
         let radiance = panorama.at(local) * self.scale;
         Some(BackgroundSample { wi, radiance, pdf })
     }
 
     fn pdf(&self, direction: Vec3) -> f32 {
-        let pdf = |panorama: &Arc<Panorama>| panorama.directions.pdf(panorama.orientation.to_local(direction));
+        let pdf = |panorama: &Arc<Panorama>| panorama.directions.pdf(self.orientation.to_local(direction));
         self.panorama.as_ref().map_or(0.0, pdf)
     }
 
@@ -183,8 +200,7 @@ impl Background for Environment {
     }
 
     fn heap_bytes(&self) -> usize {
-        // A pixel's colour, and for its cell a density and a sum.
-        self.panorama.as_ref().map_or(0, |p| p.image.pixels().len() * (size_of::<Rgb>() + 2 * size_of::<f32>()))
+        self.panorama.as_ref().map_or(0, |panorama| Panorama::bytes(panorama.image.pixels().len()))
     }
 }
 
@@ -194,7 +210,9 @@ impl Environment {
     pub fn painted(width: u32, height: u32, paint: impl Fn(u32, u32) -> Rgb) -> Self {
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| paint(x, y)).collect();
         let mut environment = Self::from_file("painted");
-        environment.load(Image::from_pixels(width, height, pixels).unwrap()).unwrap();
+        let image = Image::from_pixels(width, height, pixels).unwrap();
+        environment.set_panorama(Arc::new(Panorama::new(image).unwrap()));
+        environment.prepare().unwrap();
         environment
     }
 
@@ -202,7 +220,7 @@ impl Environment {
     pub fn examples() -> Vec<Self> {
         let spots = Self::painted(32, 16, |x, y| Rgb::splat(if (x * 7 + y * 5) % 23 == 0 { 9.0 } else { 0.3 }));
         let mut turned = Self { scale: 2.5, rotation_degrees: 77.0, up: Vec3::new(0.3, 0.2, -2.0), ..spots.clone() };
-        turned.load(spots.panorama.as_ref().unwrap().image.clone()).unwrap();
+        turned.prepare().unwrap();
         let single =
             Self::painted(24, 12, |x, y| if (x, y) == (23, 3) { Rgb::new(50.0, 40.0, 30.0) } else { Rgb::BLACK });
         vec![spots, turned, single, Self::painted(3, 1, |_, _| Rgb::WHITE), Self::painted(8, 4, |_, _| Rgb::BLACK)]
@@ -235,7 +253,7 @@ mod tests {
         assert!(at(&panorama, Vec3::Y).g == 0.0 && at(&panorama, -Vec3::Y).g == 31.0);
         assert!((at(&panorama, -Vec3::Z).r - 31.5).abs() < 0.01);
         let mut turned = Environment { rotation_degrees: 90.0, ..panorama.clone() };
-        turned.load(panorama.panorama.as_ref().unwrap().image.clone()).unwrap();
+        turned.prepare().unwrap();
         // Counter-clockwise from above +X goes to -Z.
         assert!((at(&turned, -Vec3::Z).r - 15.5).abs() < 1e-3);
     }
@@ -256,14 +274,15 @@ mod tests {
         let mut environment = Environment::from_file("a.exr");
         assert_eq!(environment.prepare().unwrap_err().field, "file");
         assert!(environment.sample(Vec2::ZERO).is_none());
-        let image = |v: f32| Image::filled(2, 1, Rgb::splat(v));
-        assert_eq!(environment.load(Image::filled(0, 0, Rgb::BLACK)).unwrap_err().field, "file");
-        assert_eq!(environment.load(image(f32::INFINITY)).unwrap_err().field, "file");
-        environment.load(image(-3.0)).unwrap();
-        assert_eq!((environment.mean(), at(&environment, Vec3::X)), (Rgb::BLACK, Rgb::BLACK));
-        environment.load(image(f32::NAN)).unwrap();
-        environment.prepare().unwrap();
-        environment.load(image(1e38)).unwrap();
+        let panorama = |v: f32| Panorama::new(Image::filled(2, 1, Rgb::splat(v)));
+        assert_eq!(Panorama::new(Image::filled(0, 0, Rgb::BLACK)).err(), Some("has no pixels"));
+        assert_eq!(panorama(f32::INFINITY).err(), Some("has pixels without end"));
+        for nothing in [-3.0, f32::NAN] {
+            environment.set_panorama(Arc::new(panorama(nothing).unwrap()));
+            environment.prepare().unwrap();
+            assert_eq!((environment.mean(), at(&environment, Vec3::X)), (Rgb::BLACK, Rgb::BLACK));
+        }
+        environment.set_panorama(Arc::new(panorama(1e38).unwrap()));
         assert!(environment.prepare().is_ok());
         assert_eq!(Environment { scale: 10.0, ..environment }.prepare().unwrap_err().field, "scale");
     }

@@ -15,6 +15,7 @@ mod solid;
 #[cfg(test)]
 mod contract;
 
+pub use environment::Panorama;
 pub use gradient::Blend;
 pub use sky::PreparedSky;
 

@@ -11,6 +11,12 @@ pub(super) struct Orientation {
     z: Vec3,
 }
 
+impl Default for Orientation {
+    fn default() -> Self {
+        Self { x: Vec3::X, y: Vec3::Y, z: Vec3::Z }
+    }
+}
+
 impl Orientation {
     /// The sky's +Y at `up`, the shortest way, after a turn by `degrees` about +Y, counter-clockwise as seen from the
     /// top. Not turned when `up` has no direction.

@@ -26,21 +26,31 @@ pub struct Ies {
     /// Whether its candelas count as they are, times the light's intensity; otherwise the greatest counts as 1.
     #[serde(default)]
     pub absolute: bool,
-    /// What [`Ies::load`] makes of the file: clones share it.
+    /// What the file holds: clones share it.
     #[serde(skip)]
     profile: Option<Arc<Profile>>,
 }
 
 impl Ies {
-    /// One whose text is to be given to [`Ies::load`].
+    /// One whose file is to be given to [`Ies::load`] or [`Ies::set_profile`].
     pub fn from_file(file: impl Into<String>) -> Self {
         Self { file: file.into(), direction: None, rotation_degrees: 0.0, absolute: false, profile: None }
     }
 
     /// Takes what the file holds; an error names the line at fault.
     pub fn load(&mut self, text: &str) -> Result<(), InvalidIes> {
-        self.profile = Some(Arc::new(photometry::read(text)?));
+        self.profile = Some(Arc::new(Profile::read(text)?));
         Ok(())
+    }
+
+    /// What the file holds, once it is loaded.
+    pub fn profile(&self) -> Option<&Arc<Profile>> {
+        self.profile.as_ref()
+    }
+
+    /// Takes what the file holds, which lights may share.
+    pub fn set_profile(&mut self, profile: Arc<Profile>) {
+        self.profile = Some(profile);
     }
 
     /// Checks the numbers, not the file.
@@ -79,9 +89,9 @@ impl Ies {
     }
 }
 
-/// Candelas over all directions.
+/// Candelas over all directions: what an IES file holds.
 #[derive(Clone, PartialEq)]
-pub(super) struct Profile {
+pub struct Profile {
     /// Vertical angles in degrees, growing.
     vertical: Vec<f32>,
     /// Horizontal angles in degrees, growing, from 0 to 360.
@@ -98,9 +108,14 @@ impl fmt::Debug for Profile {
 }
 
 impl Profile {
+    /// Reads a file's text; an error names the line at fault.
+    pub fn read(text: &str) -> Result<Self, InvalidIes> {
+        photometry::read(text)
+    }
+
     /// From planes of the horizontal angles that the file has, the others by symmetry; an error where they cover neither
     /// a quarter, a half nor the whole turn.
-    pub fn new(vertical: Vec<f32>, horizontal: &[f32], candelas: &[f32]) -> Result<Self, String> {
+    pub(super) fn new(vertical: Vec<f32>, horizontal: &[f32], candelas: &[f32]) -> Result<Self, String> {
         let rows = vertical.len();
         let plane = |i: usize| candelas.get(i * rows..(i + 1) * rows).unwrap_or_default();
         let mut planes: Vec<(f32, &[f32])> =
@@ -136,12 +151,12 @@ impl Profile {
 
     /// The greatest value.
     #[cfg(test)]
-    pub fn greatest(&self) -> f32 {
+    pub(super) fn greatest(&self) -> f32 {
         self.greatest
     }
 
     /// Candelas at angles in degrees, blended between those measured; none beyond the vertical ones.
-    pub fn at(&self, vertical: f32, horizontal: f32) -> f32 {
+    fn at(&self, vertical: f32, horizontal: f32) -> f32 {
         let (Some(first), Some(last)) = (self.vertical.first(), self.vertical.last()) else { return 0.0 };
         // What is measured to the end shines to the end; rounding of an angle must not make it dark.
         if vertical < first - 1e-3 || vertical > last + 1e-3 {

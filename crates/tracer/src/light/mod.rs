@@ -14,7 +14,7 @@ mod spot;
 #[cfg(test)]
 mod contract;
 
-pub use ies::Ies;
+pub use ies::{Ies, Profile};
 pub use photometry::InvalidIes;
 pub use source::{Attenuation, Extent};
 

@@ -25,6 +25,8 @@ pub struct Geometry {
     pub bvh_bytes: usize,
     /// Bytes of the pictures that textures show.
     pub texture_bytes: usize,
+    /// Bytes of the background's picture and tables.
+    pub background_bytes: usize,
 }
 
 impl Geometry {

@@ -193,6 +193,7 @@ impl World {
     /// Counts for reports.
     pub fn geometry(&self) -> Geometry {
         let texture_bytes = self.materials.textures().image_bytes();
-        Geometry { texture_bytes, ..Geometry::of(&self.top, self.lamps.len()) }
+        let background_bytes = self.background.heap_bytes();
+        Geometry { texture_bytes, background_bytes, ..Geometry::of(&self.top, self.lamps.len()) }
     }
 }
