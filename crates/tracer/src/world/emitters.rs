@@ -172,7 +172,7 @@ impl World {
         let emitters = &self.emitters;
         let far = emitters.far_chance() * emitters.far.len() as f32;
         if u.x < far {
-            let place = (u.x / emitters.far_chance()).min(emitters.far.len() as f32 - 0.5);
+            let place = (u.x / emitters.far_chance()).min((emitters.far.len() as f32).next_down());
             let rest = Vec2::new((place - place.floor()).min(1f32.next_down()), u.y);
             return match *emitters.far.get(place as usize)? {
                 Far::Lamp(number) => self.lamp_light(number, to, rest, emitters.far_chance()),
