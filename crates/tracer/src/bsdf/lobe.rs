@@ -164,6 +164,17 @@ impl Lobe {
         }
     }
 
+    /// How it scatters for the most part: what a rough mirror scatters more than once counts as the rest of it.
+    pub fn scatter(&self) -> Scatter {
+        if self.is_specular() {
+            Scatter::Specular
+        } else if self.is_matt() || matches!(self, Self::Sheen(_)) {
+            Scatter::Diffuse
+        } else {
+            Scatter::Glossy
+        }
+    }
+
     /// Whether it spreads light so evenly that what lies over it shows in `wi` as much as in `wo`.
     #[inline]
     pub fn is_matt(&self) -> bool {

@@ -108,6 +108,11 @@ impl Bsdf {
         }
     }
 
+    /// Takes away what scatters in such ways; layers dim what is below them all the same.
+    pub fn mute(&mut self, is_muted: impl Fn(Scatter) -> bool) {
+        self.lobes.iter_mut().filter(|one| is_muted(one.lobe.scatter())).for_each(|one| one.weight = 0.0);
+    }
+
     /// What all layers leave of even light: ∫ 2 μ T(μ) dμ = ∫ 4 s³ T(s²) ds by Gauss and Legendre's five places.
     fn mean_left(&self) -> f32 {
         const PLACES: [(f32, f32); 5] = [

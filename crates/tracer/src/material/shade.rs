@@ -4,7 +4,7 @@ use super::lookup;
 use crate::bsdf::{Bsdf, fresnel};
 use crate::surface::Surface;
 use crate::texture::Lookup;
-use juggler_math::{Frame, Rgb, Vec3};
+use juggler_math::{Frame, Rgb, Vec3, hash};
 
 /// Least sine above the surface at which shading normals may mirror: below it a mirror would look into the ground.
 const LEAST_RISE: f32 = 0.01;
@@ -23,9 +23,12 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// A point as it is looked at from straight above.
+    /// A point as it is looked at from straight above. What is one thing or another by chance is decided by the digits of
+    /// its place.
     pub fn of(surface: &'a Surface) -> Self {
-        View { surface, wo: surface.normal, around_ior: 1.0, pick: 0.5 }
+        let [x, y, z] = surface.point.to_array().map(f32::to_bits);
+        let pick = hash::unit_f32(hash::combine(hash::combine(x, y), z));
+        View { surface, wo: surface.normal, around_ior: 1.0, pick }
     }
 
     /// Whether it is looked at from the side to which the true normal points.

@@ -6,7 +6,7 @@ use crate::bsdf::Phong as PhongLobe;
 use crate::medium::{Interior, InteriorId};
 use crate::surface::Surface;
 use crate::texture::TextureTable;
-use juggler_math::Rgb;
+use juggler_math::{Frame, Rgb};
 use std::borrow::Cow;
 
 /// All materials of a world by number, with the textures they use. Made by a
@@ -29,8 +29,6 @@ struct Facts {
     holes: bool,
     /// It differs from place to place.
     textured: bool,
-    /// Light may go through it, so that its frame stands on the outside.
-    transmissive: bool,
     /// How it shines, if it does.
     glow: Option<Glow>,
     /// What is behind it.
@@ -38,8 +36,7 @@ struct Facts {
 }
 
 impl Facts {
-    const NONE: Self =
-        Self { transparent: false, holes: false, textured: false, transmissive: false, glow: None, interior: None };
+    const NONE: Self = Self { transparent: false, holes: false, textured: false, glow: None, interior: None };
 }
 
 impl MaterialTable {
@@ -60,8 +57,6 @@ impl MaterialTable {
             transparent: holes || classic || any(|part| part.transparent),
             holes: holes || any(|part| part.holes),
             textured: compiled.is_textured() || any(|part| part.textured),
-            transmissive: matches!(&compiled, Compiled::Physical(material) if material.is_transmissive())
-                || any(|part| part.transmissive),
             glow: self.glow_of(&compiled),
             interior: None,
         };
@@ -136,10 +131,7 @@ impl MaterialTable {
 
     /// Material `id` at a point; black for a number that is no material.
     pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
-        let transmissive = self.facts(id).transmissive;
-        let normal = view.surface.shading_normal;
-        let normal = if transmissive { normal } else { facing_normal(view, normal) };
-        let mut shade = Shade { transmissive, ..Shade::black(normal) };
+        let mut shade = Shade::black(facing_normal(view, view.surface.shading_normal));
         let (mut id, mut view) = (id, *view);
         // Every part is an earlier material, so this ends.
         while let Some(compiled) = self.materials.get(id.0 as usize) {
@@ -150,6 +142,10 @@ impl MaterialTable {
                 }
                 Compiled::Physical(physical) => {
                     shade.bsdf = physical.bsdf(&self.textures, &view);
+                    if physical.is_transmissive() {
+                        shade.frame = Frame::around(view.surface.shading_normal);
+                        shade.transmissive = true;
+                    }
                     return shade;
                 }
                 Compiled::Checkerboard(board) => board.pick(view.surface),

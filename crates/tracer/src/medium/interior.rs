@@ -69,6 +69,17 @@ impl Interiors {
         Self { solids }
     }
 
+    /// Whether the surface of a solid is not there where a path that is in these meets it, on its way in or out: in another
+    /// one, of higher priority.
+    pub fn hide(&self, id: InteriorId, inwards: bool, interiors: &[Interior]) -> bool {
+        if self.is_empty() {
+            return false;
+        }
+        let others = if inwards { *self } else { self.left(id) };
+        let own = interiors.get(id.place()).map(|own| own.priority);
+        others.top(interiors).map(|other| other.priority) > own
+    }
+
     /// What it really is in: of the solids with the highest priority the one it came into last. `interiors` is the table
     /// of all.
     #[inline]

@@ -4,7 +4,7 @@ use super::areas::{Areas, NOWHERE};
 use super::glowing::Glowing;
 use super::{Lamp, Vertex, World};
 use crate::background::AnyBackground;
-use crate::emitter::{AreaEmitter, LightBounds, LightTree};
+use crate::emitter::{AreaEmitter, LightBounds, LightTree, Pick};
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 
 /// Everything that gives off light.
@@ -129,6 +129,24 @@ impl Emitters {
         1.0 - self.far_chance() * self.far.len() as f32
     }
 
+    /// One of those that have a place.
+    #[inline]
+    fn pick(&self, to: &Receiver, u: f32) -> Option<Pick> {
+        match self.finite.len() {
+            1 => Some(Pick { index: 0, probability: 1.0, rest: u }),
+            _ => self.tree.sample(to.point, to.normal, u),
+        }
+    }
+
+    /// The chance of picking that one.
+    #[inline]
+    fn chance(&self, to: &Receiver, index: u32) -> f32 {
+        match self.finite.len() {
+            1 => 1.0,
+            _ => self.tree.probability(to.point, to.normal, index),
+        }
+    }
+
     /// Density with which [`World::sample_light`] picks the place of a shape that a ray met.
     fn pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> Option<f32> {
         let at = self.shapes.binary_search_by_key(&vertex.object, |shining| shining.shape.number).ok()?;
@@ -138,7 +156,7 @@ impl Emitters {
             return None;
         }
         let index = shining.first + part;
-        let chance = self.tree.probability(from.point, from.normal, index) * self.near_chance();
+        let chance = self.chance(from, index) * self.near_chance();
         let pdf = || match self.finite.get(index as usize) {
             Some(Emitter::Area(area, _)) => area.pdf(from.point, vertex.surface.point),
             Some(Emitter::Shape(_)) => shining.shape.pdf(from, ray, vertex),
@@ -154,7 +172,7 @@ impl World {
         let emitters = &self.emitters;
         let far = emitters.far_chance() * emitters.far.len() as f32;
         if u.x < far {
-            let place = (u.x / emitters.far_chance()).min(emitters.far.len() as f32 - 0.5);
+            let place = (u.x / emitters.far_chance()).min((emitters.far.len() as f32).next_down());
             let rest = Vec2::new((place - place.floor()).min(1f32.next_down()), u.y);
             return match *emitters.far.get(place as usize)? {
                 Far::Lamp(number) => self.lamp_light(number, to, rest, emitters.far_chance()),
@@ -162,7 +180,7 @@ impl World {
             };
         }
         let near = emitters.near_chance();
-        let pick = emitters.tree.sample(to.point, to.normal, ((u.x - far) / near).min(1f32.next_down()))?;
+        let pick = emitters.pick(to, ((u.x - far) / near).min(1f32.next_down()))?;
         let (chance, rest) = (pick.probability * near, Vec2::new(pick.rest, u.y));
         match emitters.finite.get(pick.index as usize)? {
             Emitter::Lamp(number) => self.lamp_light(*number, to, rest, chance),

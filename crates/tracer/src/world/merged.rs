@@ -5,7 +5,7 @@ use super::large::Order;
 use super::{Object, WorldHit};
 use crate::shape::{AnyShape, Hit, Mesh, Shape, within_floats};
 use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
-use juggler_math::{Aabb, Motion, Ray, Transform, Vec2, Vec3};
+use juggler_math::{Motion, Ray, Transform, Vec2, Vec3};
 use std::sync::Arc;
 
 /// A mesh of more triangles stands for itself.
@@ -16,8 +16,6 @@ const MOST_ALTOGETHER: usize = 1 << 20;
 /// Small meshes of a level that are where they were made.
 #[derive(Clone)]
 pub struct Merged {
-    /// In the level's space, a little wider.
-    bounds: Aabb,
     bvh: Arc<TriangleBvh>,
     /// Of each mesh its first triangle here and its number.
     owners: Vec<(u32, u32)>,
@@ -66,9 +64,7 @@ impl Merged {
             positions.extend_from_slice(&data.positions);
         }
         let bvh = TriangleBvh::build(&positions, &triangles, Quality::Balanced).ok().filter(|_| !places.is_empty())?;
-        let bounds = places.iter().map(|place| objects[*place as usize].bounds()).fold(Aabb::EMPTY, Aabb::union);
-        let bounds = bounds.grown(16.0 * f32::EPSILON * bounds.min.abs().max(bounds.max.abs()).max_element());
-        Some(Self { bounds, bvh: Arc::new(bvh), owners })
+        Some(Self { bvh: Arc::new(bvh), owners })
     }
 
     /// The same for another vector unit.
@@ -84,34 +80,34 @@ impl Merged {
 
     /// Improves on `hits` with the nearest hits.
     pub fn closest(&self, rays: &mut [Ray], order: Order, hits: &mut [WorldHit]) {
-        let lanes: Vec<usize> = (0..rays.len()).filter(|lane| self.bounds.clip(&rays[*lane]).is_some()).collect();
-        let mut local: Vec<Ray> = lanes.iter().map(|lane| within_floats(&rays[*lane])).collect();
-        let mut found: Vec<Option<TriangleHit>> = vec![None; local.len()];
+        let mut found: Vec<Option<TriangleHit>> = vec![None; rays.len()];
+        rays.iter_mut().for_each(|ray| *ray = within_floats(ray));
         match order {
-            Order::Coherent => self.bvh.closest_packet(&mut local, &mut found),
-            Order::Any => self.bvh.closest_batch(&mut local, &mut found),
+            Order::Coherent => self.bvh.closest_packet(rays, &mut found),
+            Order::Any => self.bvh.closest_batch(rays, &mut found),
         }
-        for (lane, hit) in lanes.into_iter().zip(found) {
-            let Some(hit) = hit else { continue };
-            let owner = self.owners.partition_point(|(first, _)| *first <= hit.index) - 1;
-            let (start, number) = self.owners[owner];
-            let hit = Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index - start };
-            hits[lane].keep(hit, number, &mut rays[lane]);
+        for ((ray, best), hit) in rays.iter_mut().zip(hits).zip(found) {
+            if let Some(hit) = hit {
+                let owner = self.owners.partition_point(|(first, _)| *first <= hit.index) - 1;
+                let (start, number) = self.owners[owner];
+                let hit = Hit { t: hit.t, uv: Vec2::new(hit.u, hit.v), part: hit.index - start };
+                best.keep(hit, number, ray);
+            }
         }
     }
 
     /// Marks those of the rays that meet it.
     pub fn any(&self, rays: &[Ray], order: Order, occluded: &mut [bool]) {
-        let waits = |lane: &usize| !occluded[*lane] && self.bounds.clip(&rays[*lane]).is_some();
-        let lanes: Vec<usize> = (0..rays.len()).filter(waits).collect();
-        let local: Vec<Ray> = lanes.iter().map(|lane| within_floats(&rays[*lane])).collect();
-        let mut found = vec![false; local.len()];
+        // Those that are answered already have no way to go.
+        let left = |(ray, occluded): (&Ray, &bool)| if *occluded { ray.up_to(-1.0) } else { within_floats(ray) };
+        let local: Vec<Ray> = rays.iter().zip(&*occluded).map(left).collect();
+        let mut found = vec![false; rays.len()];
         match order {
             Order::Coherent => self.bvh.any_packet(&local, &mut found),
             Order::Any => self.bvh.any_batch(&local, &mut found),
         }
-        for (lane, found) in lanes.into_iter().zip(found) {
-            occluded[lane] = found;
+        for (occluded, found) in occluded.iter_mut().zip(found) {
+            *occluded |= found;
         }
     }
 }

@@ -230,7 +230,7 @@ impl World {
         self.crossing(ray, |_| Rgb::WHITE, filter)
     }
 
-    /// What holes and media leave.
+    /// What holes and media leave. Surfaces in solids of higher priority are not there.
     fn dimmed(&self, ray: Ray, inside: Interiors) -> Rgb {
         let inside = Cell::new(inside);
         let interiors = self.materials.interiors();
@@ -240,8 +240,11 @@ impl World {
         };
         let gap = |vertex: &Vertex| {
             if let Some(id) = self.materials.interior(vertex.material) {
-                let enters = vertex.surface.normal.dot(ray.direction) < 0.0;
-                inside.set(if enters { inside.get().entered(id) } else { inside.get().left(id) });
+                let (enters, now) = (vertex.surface.normal.dot(ray.direction) < 0.0, inside.get());
+                inside.set(if enters { now.entered(id) } else { now.left(id) });
+                if now.hide(id, enters, interiors) {
+                    return Rgb::WHITE;
+                }
             }
             Rgb::splat(self.materials.gap(vertex.material, &vertex.surface))
         };

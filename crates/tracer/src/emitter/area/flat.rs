@@ -5,7 +5,7 @@ use super::AreaSample;
 use juggler_math::{DVec3, Vec2, Vec3, warp};
 
 /// A surface is far from where the square of the distance to its centre is so many times its area.
-const FAR: f64 = 8.0;
+const FAR: f64 = 3.0;
 
 /// A flat surface with two edges from a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]

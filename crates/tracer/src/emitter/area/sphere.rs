@@ -5,6 +5,9 @@ use super::{AreaSample, area_density, seen};
 use juggler_math::{Aabb, DVec3, Vec2, Vec3, fun};
 use std::f64::consts::{PI, TAU};
 
+/// So close to the surface, in units of the largest coordinate, a point counts as on it.
+const TOUCHING: f64 = 1e-6;
+
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereEmitter {
@@ -19,11 +22,12 @@ impl SphereEmitter {
         usable.then(|| Self { center: center.as_dvec3(), radius: f64::from(radius) })
     }
 
-    /// 1 - cos of the half angle under which it is seen, and the squared sine; `None` from within and too close.
+    /// 1 - cos of the half angle under which it is seen, and the squared sine; `None` from within and from the surface
+    /// itself, where rounding decides on which side a point lies: who stands inside must see the other wall.
     fn cone(&self, squared_distance: f64) -> Option<(f64, f64)> {
         let sin_squared = self.radius * self.radius / squared_distance;
-        // From the surface itself, where rounding decides the side, the half space is as good as the cone.
-        (sin_squared < 1.0 - 1e-9).then(|| (sin_squared / (1.0 + (1.0 - sin_squared).sqrt()), sin_squared))
+        let near = self.radius + TOUCHING * self.center.abs().max_element().max(self.radius);
+        (squared_distance > near * near).then(|| (sin_squared / (1.0 + (1.0 - sin_squared).sqrt()), sin_squared))
     }
 
     pub(super) fn sample(&self, from: Vec3, u: Vec2) -> Option<AreaSample> {

@@ -99,7 +99,7 @@ impl Integrator for Path {
         }
         let around = surface::around(world, path, interior);
         let choice = path.sampler.at(dimension::CHOICE).next_2d();
-        let shade = world.shade(vertex, -ray.direction, around, choice.x);
+        let mut shade = world.shade(vertex, -ray.direction, around, choice.x);
         if shade.opacity < 1.0 && choice.y >= shade.opacity {
             return surface::pass(world, ray, path, vertex, emit);
         }
@@ -110,6 +110,7 @@ impl Integrator for Path {
         if path.depth + 1 >= self.max_depth {
             return;
         }
+        self.limit(&mut shade.bsdf, path);
         let seen = Seen::new(ray, vertex, shade, interior);
         if !seen.shade.bsdf.is_specular() {
             seen.ask_light(world, path, emit);

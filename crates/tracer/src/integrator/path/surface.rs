@@ -1,9 +1,9 @@
 //! Paths at surfaces: what a light brings, and where to go on.
 
 use super::super::trail::power_heuristic;
-use super::super::{Emit, PathState, Trail};
+use super::super::{Counts, Emit, PathState, Trail};
 use super::{Path, dimension};
-use crate::bsdf::{BsdfSample, Scatter};
+use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
 use crate::medium::InteriorId;
 use crate::surface::Surface;
@@ -45,14 +45,8 @@ fn crossed(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> cra
 
 /// Whether a surface is not there, because a solid of higher priority is.
 pub fn is_covered(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, id: InteriorId) -> bool {
-    if path.trail.inside.is_empty() {
-        return false;
-    }
-    let outside = vertex.surface.normal.dot(ray.direction) < 0.0;
-    let others = if outside { path.trail.inside } else { path.trail.inside.left(id) };
-    let priority = |own: &crate::medium::Interior| own.priority;
-    let own = world.interiors().get(id.place()).map(priority);
-    others.top(world.interiors()).map(priority) > own
+    let inwards = vertex.surface.normal.dot(ray.direction) < 0.0;
+    path.trail.inside.hide(id, inwards, world.interiors())
 }
 
 /// Index of refraction around a solid that a path meets.
@@ -131,6 +125,21 @@ impl<'a> Seen<'a> {
 }
 
 impl Path {
+    /// Takes away the ways of scattering that a path has had as often as it may: for lights that are asked and for
+    /// directions that are followed alike, since both share the light between them.
+    pub fn limit(&self, bsdf: &mut Bsdf, path: &PathState) {
+        if [self.max_diffuse, self.max_glossy, self.max_specular] == [None; 3] {
+            return;
+        }
+        let Counts { diffuse, glossy, specular, .. } = path.trail.scattered;
+        let is_done = |count: u16, most: Option<u32>| most.is_some_and(|most| u32::from(count) >= most);
+        bsdf.mute(|scatter| match scatter {
+            Scatter::Diffuse => is_done(diffuse, self.max_diffuse),
+            Scatter::Glossy => is_done(glossy, self.max_glossy),
+            Scatter::Specular => is_done(specular, self.max_specular),
+        });
+    }
+
     /// The direction that the material chooses.
     pub fn go_on(&self, seen: &Seen, path: &PathState, emit: &mut Emit) {
         let u = path.sampler.at(dimension::SCATTER).next_2d();
@@ -140,13 +149,11 @@ impl Path {
             return;
         }
         let trail = seen.trail(path, &sample);
-        let within = |count: u16, most: Option<u32>| most.is_none_or(|most| u32::from(count) <= most);
-        let counts = trail.scattered;
-        let allowed = within(counts.diffuse, self.max_diffuse)
-            && within(counts.glossy, self.max_glossy)
-            && within(counts.specular, self.max_specular);
         let throughput = emit.weight() * sample.weight * trail.ior_scale;
-        if let Some(chance) = self.survival(path, throughput).filter(|_| allowed) {
+        if throughput.is_black() {
+            return;
+        }
+        if let Some(chance) = self.survival(path, throughput) {
             emit.follow(seen.surface.spawn(wi, seen.time), sample.weight * (1.0 / chance), trail, 1);
         }
     }

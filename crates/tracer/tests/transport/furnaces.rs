@@ -1,0 +1,96 @@
+//! White furnaces: in light of radiance 1 from everywhere, what loses no light has the radiance 1.
+
+use crate::probe::{Measured, Scene, looking, measure, path};
+use juggler_math::{Transform, Vec3};
+
+/// What a point of a ball of this material shows, at 45 degrees.
+fn ball(material: &str, samples: u32) -> Measured {
+    let scene = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0);
+    let point = Vec3::new(1.0, 0.0, 1.0).normalize();
+    // Roulette would only bring noise: nothing is lost.
+    measure(&scene.world(), &looking(Vec3::Z * 5.0 + point, point), &*path(r#""max_depth": 1000"#), samples)
+}
+
+#[test]
+fn white_things_vanish() {
+    let materials = [
+        r#"{"diffuse": {"reflectance": 1}}"#,
+        r#"{"diffuse": {"reflectance": 1, "roughness": 0.7}}"#,
+        r#"{"conductor": {"reflectance": 1}}"#,
+        r#"{"dielectric": {"ior": 1.5}}"#,
+        r#"{"dielectric": {"ior": 2.4}}"#,
+        r#"{"dielectric": {"ior": 0.7}}"#,
+        r#"{"dielectric": {"ior": 1}}"#,
+        r#"{"dielectric": {"ior": 1.5, "thin": true}}"#,
+        r#"{"boundary": {"medium": {"scattering": 2, "anisotropy": 0.5}}}"#,
+        r#"{"dielectric": {"ior": 1.3, "medium": {"scattering": [2, 1, 0.5], "anisotropy": -0.3}}}"#,
+        r#"{"phong": {"diffuse": 1, "specular": 0}}"#,
+        r#"{"phong": {"diffuse": 0.5, "specular": 0, "reflection": 0.5}}"#,
+        r#"{"phong": {"diffuse": 0, "specular": 0, "reflection": 0.4, "transparency": 0.6, "ior": 1.5}}"#,
+        r#"{"phong": {"diffuse": 0, "specular": 0, "reflection": 1, "transparency": 1, "ior": 1.5, "fresnel": true}}"#,
+        r#"{"mix": {"amount": 0.3, "a": {"diffuse": {"reflectance": 1}}, "b": {"dielectric": {"ior": 1.5}}}}"#,
+        r#"{"mask": {"opacity": 0.4, "material": {"diffuse": {"reflectance": 1}}}}"#,
+    ];
+    for material in materials {
+        println!("{material}");
+        ball(material, 64).is(1.0);
+    }
+}
+
+/// The tables of what is scattered more than once are good to half a percent a surface, of which light meets two and more.
+#[test]
+fn rough_things_vanish_nearly() {
+    for roughness in [0.05, 0.3, 1.0] {
+        let of = |kind: &str| format!(r#"{{"{kind}, "roughness": {roughness}}}}}"#);
+        let kinds = [
+            r#"conductor": {"reflectance": 1"#,
+            r#"dielectric": {"ior": 1.5"#,
+            r#"dielectric": {"ior": 0.7"#,
+            r#"dielectric": {"ior": 1.5, "thin": true"#,
+        ];
+        for kind in kinds {
+            // Light that is caught in rough glass is what takes so many.
+            let samples = if kind.contains("ior") { 512 } else { 64 };
+            let Measured { mean, sigma } = ball(&of(kind), samples);
+            assert!((mean - 1.0).abs() < 3.0 * sigma + 0.01 && sigma < 0.006, "{kind}, {roughness}: {mean} ± {sigma}");
+        }
+    }
+}
+
+/// Without compensation light is lost, more on rougher things.
+#[test]
+fn what_is_not_compensated_is_darker() {
+    let of = |roughness: f64| {
+        ball(
+            &format!(
+                r#"{{"conductor": {{"reflectance": 1, "roughness": {roughness}, "energy_compensation": false}}}}"#
+            ),
+            64,
+        )
+        .mean
+    };
+    let (smooth, rough) = (of(0.3), of(0.9));
+    assert!(rough < 0.95 && rough > 0.4 && smooth < 1.0 && smooth > rough + 0.02, "{smooth} {rough}");
+}
+
+/// Many things of all kinds that lose nothing, on a white floor in a white sky.
+#[test]
+fn a_white_scene_is_white() {
+    let shapes = [
+        (r#"{"cuboid": {}}"#, r#"{"dielectric": {"ior": 1.5}}"#),
+        (r#"{"sphere": {"radius": 0.7}}"#, r#"{"diffuse": {"reflectance": 1}}"#),
+        (r#"{"sphere": {"radius": 0.6}}"#, r#"{"dielectric": {"ior": 1.33}}"#),
+        (r#"{"cylinder": {}}"#, r#"{"conductor": {"reflectance": 1}}"#),
+        (r#"{"sphere": {"radius": 0.9}}"#, r#"{"boundary": {"medium": {"scattering": 3}}}"#),
+    ];
+    let mut scene = Scene::new().with(r#"{"plane": {}}"#, -Vec3::Y, r#"{"diffuse": {"reflectance": 1}}"#).in_light(1.0);
+    for (i, (shape, material)) in (0u8..).zip(shapes) {
+        let turn = Transform::rotation(Vec3::new(1.0, 2.0, 0.5), f32::from(i)).unwrap();
+        let place = Transform::translation(Vec3::new(f32::from(i) * 1.1 - 2.0, 0.2, f32::from(i % 2) - 0.5));
+        scene = scene.placed(shape, turn.then(&place), material);
+    }
+    let shot = crate::probe::camera(
+        r#"{"perspective": {"eye": [0, 1.5, 6], "look_at": [0, 0, 0], "vertical_fov_degrees": 40}}"#,
+    );
+    measure(&scene.world(), &shot, &*path(r#""max_depth": 1000"#), 32).is(1.0);
+}

@@ -1,0 +1,140 @@
+//! Panes and stacks of them.
+
+use crate::closed_forms::{fresnel, integral, stack};
+use crate::probe::{Measured, Scene, at_origin, looking, measure, path, traced};
+use juggler_math::{Transform, Vec3};
+
+/// What is seen of a wall of radiance 1 at z = -5 through what stands before it, along a ray that comes down on z = 0 with
+/// this cosine.
+fn through(mut scene: Scene, cos: f32) -> Measured {
+    let wall = Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap();
+    scene = scene.placed(
+        r#"{"rectangle": {"size": [4000, 4000]}}"#,
+        wall.then(&Transform::translation(Vec3::Z * -5.0)),
+        r#"{"emissive": {"radiance": 1}}"#,
+    );
+    let way = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    measure(&scene.world(), &looking(way * 5.0, Vec3::ZERO), &*path(""), 1024)
+}
+
+/// A wide pane from z = `from` to z = `to`.
+fn pane(scene: Scene, from: f32, to: f32, material: &str) -> Scene {
+    let shape = format!(r#"{{"cuboid": {{"min": [-1000, -1000, {from}], "max": [1000, 1000, {to}]}}}}"#);
+    scene.with(&shape, Vec3::ZERO, material)
+}
+
+/// The shares that a border mirrors and lets through.
+fn border(cos: f64, ior: f64) -> [f64; 2] {
+    let share = fresnel(cos, ior);
+    [share, 1.0 - share]
+}
+
+#[test]
+fn one_pane_and_two() {
+    let glass = r#"{"dielectric": {"ior": 1.5}}"#;
+    for cos in [1.0, 0.7, 0.25] {
+        let share = fresnel(cos, 1.5);
+        let one = pane(Scene::new(), 0.0, 0.1, glass);
+        through(one, cos as f32).is((1.0 - share) / (1.0 + share));
+        // (1 - R) / (1 + (2n - 1) R) for n panes (Stokes 1862).
+        let two = pane(pane(Scene::new(), 0.0, 0.1, glass), 0.2, 0.4, glass);
+        through(two, cos as f32).is((1.0 - share) / (1.0 + 3.0 * share));
+        let thin = Scene::new().placed(
+            r#"{"rectangle": {"size": [2000, 2000]}}"#,
+            Transform::rotation(Vec3::X, std::f32::consts::FRAC_PI_2).unwrap(),
+            r#"{"dielectric": {"ior": 1.5, "thin": true}}"#,
+        );
+        through(thin, cos as f32).is((1.0 - share) / (1.0 + share));
+    }
+}
+
+#[test]
+fn coloured_glass() {
+    let glass = r#"{"dielectric": {"ior": 1.5, "medium": {"color": 0.5, "distance": 0.2}}}"#;
+    for cos in [1.0f64, 0.6] {
+        let share = fresnel(cos, 1.5);
+        let way = 0.3 / (1.0 - (1.0 - cos * cos) / 2.25).sqrt();
+        let left = 0.5f64.powf(way / 0.2);
+        let expected = (1.0 - share).powi(2) * left / (1.0 - (share * left).powi(2));
+        through(pane(Scene::new(), 0.0, 0.3, glass), cos as f32).is(expected);
+    }
+}
+
+/// Water that reaches into its glass, and water that only touches air where the glass ends: the border between both is that
+/// of 1.33 and 1.5, wherever the water's own surface lies in the glass.
+#[test]
+fn water_in_a_glass() {
+    let cos = 0.8f64;
+    // The cosine in a medium of this index.
+    let inside = |ior: f64| (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
+    let [_, expected] = stack(&[border(cos, 1.5), border(inside(1.5), 1.33 / 1.5), border(inside(1.33), 1.0 / 1.33)]);
+    for (glass_priority, water_priority, from) in [(1, 0, 0.25), (0, -3, 0.2001), (0, 1, 0.3), (5, 4, 0.4)] {
+        let glass = format!(r#"{{"dielectric": {{"ior": 1.5, "priority": {glass_priority}}}}}"#);
+        let water = format!(r#"{{"dielectric": {{"ior": 1.33, "priority": {water_priority}}}}}"#);
+        // Where the water has the higher priority, it is the glass that reaches into it.
+        let (glass_from, water_to) = (if water_priority > glass_priority { 0.2 } else { 0.15 }, from);
+        let scene = pane(pane(Scene::new(), glass_from, 0.5, &glass), 0.0, water_to, &water);
+        through(scene, cos as f32).is(expected);
+    }
+}
+
+/// A drop in a block of glass: from glass to water and back.
+#[test]
+fn one_within_another() {
+    let scene = pane(Scene::new(), 0.0, 1.0, r#"{"dielectric": {"ior": 1.5}}"#);
+    let scene = pane(scene, 0.4, 0.6, r#"{"dielectric": {"ior": 1.33, "priority": 1}}"#);
+    let (outer, inner) = (border(1.0, 1.5), border(1.0, 1.33 / 1.5));
+    let [_, expected] = stack(&[outer, inner, inner, outer]);
+    through(scene, 1.0).is(expected);
+}
+
+/// A floor under a pane in even light: T of all directions comes through, and what the floor gives back comes down again
+/// by R.
+#[test]
+fn light_through_a_pane() {
+    let mirrored = |cos: f64| {
+        let share = fresnel(cos.max(1e-9), 1.5);
+        2.0 * share / (1.0 + share)
+    };
+    let all = integral(|cos| 2.0 * cos * mirrored(cos));
+    let expected = 0.5 * (1.0 - all) / (1.0 - 0.5 * all);
+    let block = r#"{"cuboid": {"min": [-1000, 0.5, -1000], "max": [1000, 0.7, 1000]}}"#;
+    let below = looking(Vec3::new(0.3, 0.2, 0.1), Vec3::ZERO);
+    for roof in [Scene::floor().with(block, Vec3::ZERO, r#"{"dielectric": {"ior": 1.5}}"#)] {
+        traced(roof.in_light(1.0), &below, 256).is(expected);
+    }
+    let sheet = Scene::floor().with(r#"{"plane": {}}"#, Vec3::Y, r#"{"dielectric": {"ior": 1.5, "thin": true}}"#);
+    traced(sheet.in_light(1.0), &below, 256).is(expected);
+}
+
+/// A small lamp behind a pane lights the floor below only along refracted rays, that is by chance: as much as a formula
+/// says of a lamp straight above, which a pane of thickness t seems to bring nearer by t (1 - 1/n).
+#[test]
+fn a_caustic_of_a_pane() {
+    let lamp = r#"{"sphere": {"radius": 0.2}}"#;
+    let scene = Scene::new()
+        .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 0.01}}"#)
+        .with(lamp, Vec3::Y * 3.0, r#"{"emissive": {"radiance": 10}}"#)
+        .with(
+            r#"{"cuboid": {"min": [-1000, 1, -1000], "max": [1000, 1.6, 1000]}}"#,
+            Vec3::ZERO,
+            r#"{"dielectric": {"ior": 1.5}}"#,
+        );
+    let radiance = traced(scene, &looking(Vec3::new(0.3, 0.5, 0.2), Vec3::ZERO), 16_384);
+    let seen = 0.2 / (3.0 - 0.2);
+    let pane = fresnel(1.0, 1.5);
+    // A hundredth of the floor's light comes back by the pane; beside the axis all changes little.
+    let expected = 0.01 * 10.0 * seen * seen * (1.0 - pane) / (1.0 + pane);
+    let off = radiance.mean / expected - 1.0;
+    assert!(off.abs() < 0.02 + 3.0 * radiance.sigma / radiance.mean, "{radiance:?} {expected}");
+}
+
+/// A ball of glass on a white floor in a white sky is not seen, whatever light it gathers.
+#[test]
+fn a_ball_on_a_white_floor() {
+    let scene = Scene::new()
+        .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": 1}}"#)
+        .with(r#"{"sphere": {"radius": 1}}"#, Vec3::new(0.2, 1.0, 0.0), r#"{"dielectric": {"ior": 1.5}}"#)
+        .in_light(1.0);
+    measure(&scene.world(), &at_origin(), &*path(r#""max_depth": 1000"#), 64).is(1.0);
+}

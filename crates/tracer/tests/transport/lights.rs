@@ -1,0 +1,167 @@
+//! Irradiance of a floor by lights whose closed forms are known. 256 estimates of 64 samples each where nothing else is
+//! said.
+
+use crate::closed_forms::{polygon, rectangle};
+use crate::probe::{Scene, at_origin, camera, json, looking, measure, path, traced};
+use juggler_math::{Transform, Vec3};
+use std::f64::consts::PI;
+
+/// The floor shows half of the irradiance, over π.
+const SHOWN: f64 = 0.5 / PI;
+
+const LAMP: &str = r#"{"emissive": {"radiance": 3}}"#;
+
+/// Upside down, then there.
+fn down(at: Vec3) -> Transform {
+    Transform::rotation(Vec3::X, std::f32::consts::PI).unwrap().then(&Transform::translation(at))
+}
+
+#[test]
+fn a_sphere() {
+    for (center, radius) in [(Vec3::new(0.0, 3.0, 0.0), 1.0), (Vec3::new(-2.0, 2.5, -1.0), 0.8)] {
+        let scene = Scene::floor().with(&format!(r#"{{"sphere": {{"radius": {radius}}}}}"#), center, LAMP);
+        let distance = f64::from(center.length());
+        let sine = f64::from(radius) / distance;
+        traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * PI * sine * sine * f64::from(center.y) / distance);
+    }
+}
+
+#[test]
+fn a_disk() {
+    let scene = Scene::floor().placed(r#"{"disk": {"radius": 1.5}}"#, down(Vec3::Y * 2.0), LAMP);
+    traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * PI * 2.25 / (2.25 + 4.0));
+}
+
+#[test]
+fn a_rectangle_above_and_one_beside() {
+    let size = r#"{"rectangle": {"size": [2, 3]}}"#;
+    let center = Vec3::new(0.3, 1.2, -0.5);
+    let above = Scene::floor().placed(size, down(center), LAMP);
+    traced(above, &at_origin(), 64).is(SHOWN * 3.0 * rectangle(center, [Vec3::X * 2.0, Vec3::Z * 3.0]));
+    // It stands on the floor, its front towards +X.
+    let center = Vec3::new(-1.0, 1.0, 0.4);
+    let upright = Transform::rotation(Vec3::Z, -std::f32::consts::FRAC_PI_2).unwrap();
+    let beside = Scene::floor().placed(size, upright.then(&Transform::translation(center)), LAMP);
+    traced(beside, &at_origin(), 256).is(SHOWN * 3.0 * rectangle(center, [Vec3::Y * 2.0, Vec3::Z * 3.0]));
+}
+
+#[test]
+fn a_triangle() {
+    let corners = [Vec3::new(-1.0, 1.0, 0.5), Vec3::new(0.8, 2.0, 1.0), Vec3::new(0.3, 1.5, -1.4)];
+    for corners in [corners, [corners[0], corners[2], corners[1]]] {
+        let vertices = corners.map(json).join(", ");
+        let shape = format!(r#"{{"triangle": {{"vertices": [{vertices}]}}}}"#);
+        let scene = Scene::floor().with(&shape, Vec3::ZERO, LAMP);
+        let faces_down = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(-corners[0]) > 0.0;
+        if faces_down {
+            traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * polygon(&corners, Vec3::Y));
+        } else {
+            assert_eq!(traced(scene, &at_origin(), 16).mean, 0.0);
+        }
+    }
+}
+
+/// The form factor of equal squares face to face at a distance of their side is 0.19982, of two that share an edge at a
+/// right angle 0.20004 (Howell, C-11 and C-14).
+#[test]
+fn squares_of_a_box() {
+    let square = r#"{"rectangle": {"size": [1, 1]}}"#;
+    let show = r#"{"diffuse": {"reflectance": 1}}"#;
+    let lamp = r#"{"emissive": {"radiance": 1}}"#;
+    // Half way up, so that its picture is the floor.
+    let floor = camera(
+        r#"{"perspective": {"eye": [0, 0.5, 0], "look_at": [0, 0, 0], "up": [0, 0, -1], "vertical_fov_degrees": 90}}"#,
+    );
+    let opposed = Scene::new().with(square, Vec3::ZERO, show).placed(square, down(Vec3::Y), lamp);
+    // Pixels see different places: their spread is no measure of the error, which is far smaller.
+    let mean = measure(&opposed.world(), &floor, &*path(""), 256).mean;
+    assert!((mean - 0.199_825).abs() < 2e-4, "{mean}");
+    let upright = Transform::rotation(Vec3::Z, -std::f32::consts::FRAC_PI_2).unwrap();
+    let upright = upright.then(&Transform::translation(Vec3::new(-0.5, 0.5, 0.0)));
+    let right = Scene::new().with(square, Vec3::ZERO, show).placed(square, upright, lamp);
+    let mean = measure(&right.world(), &floor, &*path(""), 1024).mean;
+    assert!((mean - 0.200_044).abs() < 4e-4, "{mean}");
+}
+
+#[test]
+fn a_point_falls_off_with_the_square() {
+    for at in [Vec3::Y, Vec3::new(1.0, 2.0, -2.0), Vec3::new(0.0, 30.0, 40.0)] {
+        let light = format!(r#"{{"point": {{"position": {}, "intensity": 5}}}}"#, json(at));
+        let distance = f64::from(at.length());
+        traced(Scene::floor().lit(&light), &at_origin(), 4).is(SHOWN * 5.0 * f64::from(at.y) / distance.powi(3));
+    }
+}
+
+#[test]
+fn a_spot_fades_between_its_angles() {
+    // The floor's origin lies 30 degrees off its axis: in the beam, half way to the edge, outside.
+    for (beam, cutoff, share) in [(35.0, 40.0, 1.0), (20.0, 40.0, 0.5), (20.0, 29.0, 0.0)] {
+        let light = format!(
+            r#"{{"spot": {{"position": [0, 2, 0], "direction": [0.57735027, -1, 0], "intensity": 5,
+            "beam_degrees": {beam}, "cutoff_degrees": {cutoff}}}}}"#
+        );
+        let measured = traced(Scene::floor().lit(&light), &at_origin(), 4);
+        if share == 0.0 { assert_eq!(measured.mean, 0.0) } else { measured.is(SHOWN * 5.0 / 4.0 * share) }
+    }
+}
+
+/// Every place of its disk gives the same light, so the cosine is that of the axis times the mean one.
+#[test]
+fn a_sun_of_any_size() {
+    for angle in [0.0f64, 0.53, 40.0] {
+        let light =
+            format!(r#"{{"directional": {{"direction": [1, -2, 2], "intensity": 4, "angle_degrees": {angle}}}}}"#);
+        let mean = (1.0 + (0.5 * angle).to_radians().cos()) / 2.0;
+        traced(Scene::floor().lit(&light), &at_origin(), 64).is(SHOWN * 4.0 * 2.0 / 3.0 * mean);
+    }
+}
+
+#[test]
+fn lights_add_up() {
+    let point = r#"{"point": {"position": [1, 2, 1], "intensity": 5}}"#;
+    let sun = r#"{"directional": {"direction": [1, -1, 0], "intensity": 0.3}}"#;
+    let (sphere, at) = (r#"{"sphere": {"radius": 0.5}}"#, Vec3::new(-1.0, 2.0, -1.0));
+    let each = [
+        Scene::floor().lit(point),
+        Scene::floor().lit(sun),
+        Scene::floor().with(sphere, at, LAMP),
+        Scene::floor().in_light(0.2),
+    ];
+    let sum: f64 = each.map(|scene| traced(scene, &at_origin(), 1024).mean).iter().sum();
+    // The sphere hides a little of the sky.
+    let hidden = SHOWN * 0.2 * PI * 0.25 / 6.0 * 2.0 / 6f64.sqrt();
+    let all = Scene::floor().lit(point).lit(sun).with(sphere, at, LAMP).in_light(0.2);
+    traced(all, &at_origin(), 1024).is(sum - hidden);
+}
+
+/// 1,024 tiles are as one.
+#[test]
+fn a_thousand_tiles() {
+    let center = Vec3::new(0.3, 1.5, -0.2);
+    let side = 2.0 / 32.0;
+    let tile = format!(r#"{{"rectangle": {{"size": [{side}, {side}]}}}}"#);
+    let mut tiles = Scene::floor();
+    let place = |i: u16| (f32::from(i) + 0.5) * side - 1.0;
+    for i in 0..32 * 32 {
+        tiles = tiles.placed(&tile, down(center + Vec3::new(place(i % 32), 0.0, place(i / 32))), LAMP);
+    }
+    traced(tiles, &at_origin(), 256).is(SHOWN * 3.0 * rectangle(center, [Vec3::X * 2.0, Vec3::Z * 2.0]));
+}
+
+/// A white wall all round gives light back again and again: light that is evenly spread after the first time
+/// (Sumpner's integrating sphere).
+#[test]
+fn a_closed_sphere() {
+    let shell = r#"{"sphere": {"radius": 2}}"#;
+    let wall = r#"{"diffuse": {"reflectance": 0.5}}"#;
+    let light = r#"{"point": {"position": [0, 0, 0], "intensity": 12.566370614}}"#;
+    let centered = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);
+    let shot = looking(Vec3::new(0.2, 0.3, 0.1), Vec3::new(0.0, 0.0, -2.0));
+    // E = I / r² = π, of which 0.5 / π is shown; twice as much by all that comes back.
+    traced(centered, &shot, 64).is(1.0);
+    let light = r#"{"point": {"position": [0, 0, 1], "intensity": 12.566370614}}"#;
+    let aside = Scene::new().with(shell, Vec3::ZERO, wall).lit(light);
+    traced(aside, &shot, 256).is(SHOWN * 4.0 * PI / 9.0 + 0.5);
+    let glowing = r#"{"emissive": {"radiance": 0.5, "sides": "both", "material": {"diffuse": {"reflectance": 0.5}}}}"#;
+    traced(Scene::new().with(shell, Vec3::ZERO, glowing), &shot, 64).is(1.0);
+}
