@@ -106,10 +106,10 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     }
     row("lights", geometry.lights.to_string());
     row("materials", description.materials.len().to_string());
-    row("textures", description.textures.len().to_string());
+    row("textures", textures_in_words(description.textures.len(), geometry.texture_bytes));
     row("cameras", cameras.join(", "));
     row("bounds", bounds_in_words(&compiled.world.bounds()));
-    row("memory", memory_in_words(&geometry));
+    row("memory", memory_in_words(geometry.geometry_bytes, geometry.bvh_bytes));
     motion::rows(&description.animation, &scene.survey()).iter().for_each(|(key, value)| row(key, value.clone()));
     lines.join("\n")
 }
@@ -124,13 +124,13 @@ fn triangles_in_words(geometry: &Geometry) -> String {
     }
 }
 
-fn memory_in_words(geometry: &Geometry) -> String {
-    let Geometry { geometry_bytes, bvh_bytes, texture_bytes, .. } = *geometry;
-    let mut words = format!("{} shapes, {} tree", bytes(geometry_bytes as u64), bytes(bvh_bytes as u64));
-    if texture_bytes > 0 {
-        words += &format!(", {} textures", bytes(texture_bytes as u64));
-    }
-    words
+fn memory_in_words(geometry: usize, bvh: usize) -> String {
+    format!("{} shapes, {} tree", bytes(geometry as u64), bytes(bvh as u64))
+}
+
+/// `3, 12 MiB of pictures`.
+fn textures_in_words(count: usize, pictures: usize) -> String {
+    if pictures > 0 { format!("{count}, {} of pictures", bytes(pictures as u64)) } else { count.to_string() }
 }
 
 fn bounds_in_words(bounds: &Aabb) -> String {

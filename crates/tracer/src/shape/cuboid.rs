@@ -7,6 +7,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::Derivatives;
 use super::arithmetic::{EDGE, clamp_within, double, first_in_range};
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
@@ -129,6 +130,20 @@ impl Shape for Cuboid {
         point[axis] = plane;
         let unit = (point - self.min) / (self.max - self.min);
         Surface::new(point, 0.0, Self::normal(hit.part), Self::uv(hit.part, unit))
+    }
+
+    fn derivatives(&self, _local: Vec3, hit: &Hit, _time: f32) -> Option<Derivatives> {
+        let size = self.max - self.min;
+        let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
+        let (u, v) = match hit.part {
+            0 => (z, y),
+            1 => (-z, y),
+            2 => (x, z),
+            3 => (x, -z),
+            4 => (-x, y),
+            _ => (x, y),
+        };
+        Derivatives::new(u, v)
     }
 
     fn area(&self) -> f32 {

@@ -10,6 +10,7 @@
 //! ```
 
 use super::arithmetic::{EDGE, clamp_within, cross_tube, double, first_in_range, turn};
+use super::derivatives::{Derivatives, about_y, of_disk};
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::tube::tube_surface;
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
@@ -145,6 +146,13 @@ impl Shape for Cylinder {
         let point = side.point.with_y(clamp_within(side.point.y, self.y_min, self.y_max, margin));
         let v = (point.y - self.y_min) / (self.y_max - self.y_min);
         Surface { point, local: point, uv: side.uv.with_y(v), ..side }
+    }
+
+    fn derivatives(&self, local: Vec3, hit: &Hit, _time: f32) -> Option<Derivatives> {
+        if hit.part == BOTTOM || hit.part == TOP {
+            return of_disk(local, self.radius);
+        }
+        Derivatives::new(about_y(local), Vec3::Y * (self.y_max - self.y_min))
     }
 
     fn area(&self) -> f32 {

@@ -8,6 +8,7 @@
 //! ```
 
 use super::arithmetic::{in_range, turn};
+use super::derivatives::{Derivatives, of_disk};
 use super::plane::cross_ground;
 use super::solid_angle::{area_pdf, area_sample};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
@@ -66,6 +67,10 @@ impl Shape for Disk {
         let point = cross_ground(ray).1.as_vec3().clamp(-edge, edge);
         let inwards = (self.radius - point.length()) / (self.radius - self.inner_radius);
         Surface::new(point, 0.0, Vec3::Y, Vec2::new(turn(point.x, point.z), inwards.clamp(0.0, 1.0)))
+    }
+
+    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        of_disk(local, self.radius - self.inner_radius)
     }
 
     fn area(&self) -> f32 {

@@ -1,5 +1,6 @@
 //! One triangle with what its corners carry: position, shading normal, surface coordinates.
 
+use super::Derivatives;
 use super::arithmetic::{EDGE, double};
 use crate::surface::Surface;
 use juggler_math::{DVec2, DVec3, Ray, Vec2, Vec3, robust};
@@ -55,6 +56,19 @@ impl Facet {
         let uv = self.uvs.map_or(at, |[a, b, c]| a * (1.0 - at.x - at.y) + b * at.x + c * at.y);
         let shading_normal = self.shading_normal(normal, at);
         Surface { shading_normal, local_normal: shading_normal, ..Surface::new(point, error, normal, uv) }
+    }
+
+    /// How the surface runs along its coordinates, which is the same everywhere.
+    pub fn derivatives(&self) -> Option<Derivatives> {
+        let [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
+        let (to_b, to_c) = (b - a, c - a);
+        let Some([from, b, c]) = self.uvs.map(|uvs| uvs.map(|uv| uv.as_dvec2())) else {
+            return Derivatives::new(to_b.as_vec3(), to_c.as_vec3());
+        };
+        let (b, c) = (b - from, c - from);
+        let turn = b.x * c.y - b.y * c.x;
+        let (u, v) = ((to_b * c.y - to_c * b.y) / turn, (to_c * b.x - to_b * c.x) / turn);
+        Derivatives::new(u.as_vec3(), v.as_vec3())
     }
 
     /// Barycentrics where the ray meets the plane, in `f64`: those of a slender triangle are not good in `f32`.

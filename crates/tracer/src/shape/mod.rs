@@ -7,6 +7,7 @@ mod arithmetic;
 mod check;
 #[cfg(test)]
 pub mod contract;
+mod derivatives;
 mod facet;
 mod solid_angle;
 
@@ -22,6 +23,7 @@ mod triangle;
 mod tube;
 
 pub(crate) use arithmetic::within_floats;
+pub use derivatives::Derivatives;
 pub use mesh::{MeshData, Morph};
 pub use sphere::{cross_sphere, intersect_sphere, longitude_latitude, sphere_surface};
 
@@ -72,6 +74,9 @@ pub trait Shape: Send + Sync {
     }
     /// The surface at a hit that [`Shape::intersect`] gave for this ray.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+    /// How the surface runs along its coordinates at a hit, object space. `local` is the point, as [`Surface::local`] has
+    /// it for materials that are textured, `time` that of the ray.
+    fn derivatives(&self, local: Vec3, hit: &Hit, time: f32) -> Option<Derivatives>;
     /// Area of the whole surface; infinite for a shape without end, which cannot be a lamp.
     fn area(&self) -> f32;
     /// A point on the surface for `u` in the unit square; `None` when that one is seen edge-on or the shape has no

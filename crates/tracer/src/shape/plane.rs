@@ -7,6 +7,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::Derivatives;
 use super::arithmetic::in_range;
 use super::{Hit, InvalidShape, Shape, SurfaceSample};
 use crate::surface::Surface;
@@ -48,6 +49,10 @@ impl Shape for Plane {
         let end = Vec3::splat(f32::MAX);
         let point = cross_ground(ray).1.as_vec3().clamp(-end, end);
         Surface::new(point, 0.0, Vec3::Y, Vec2::new(point.x, point.z))
+    }
+
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        Derivatives::new(Vec3::X, Vec3::Z)
     }
 
     fn area(&self) -> f32 {

@@ -7,6 +7,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::Derivatives;
 use super::arithmetic::in_range;
 use super::plane::cross_ground;
 use super::solid_angle::{area_pdf, area_sample};
@@ -61,6 +62,10 @@ impl Shape for Rectangle {
         let point = cross_ground(ray).1.as_vec3().clamp(-corner, corner);
         let uv = Vec2::new(0.5 + point.x / self.size[0], 0.5 - point.z / self.size[1]);
         Surface::new(point, 0.0, Vec3::Y, uv)
+    }
+
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        Derivatives::new(Vec3::X * self.size[0], Vec3::NEG_Z * self.size[1])
     }
 
     fn area(&self) -> f32 {

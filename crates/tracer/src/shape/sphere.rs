@@ -13,6 +13,7 @@
 //! ```
 
 use super::arithmetic::{double, in_range, root_fractions, roots, turn};
+use super::derivatives::{Derivatives, about_y};
 use super::solid_angle::{area_pdf, area_sample};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
@@ -132,6 +133,12 @@ impl Shape for Sphere {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let surface = sphere_surface(Vec3::ZERO, self.radius, ray, hit);
         Surface { uv: longitude_latitude(surface.normal), local: surface.point, ..surface }
+    }
+
+    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        let across = (local.x * local.x + local.z * local.z).sqrt();
+        let south_to_north = Vec3::new(-local.x * local.y / across, across, -local.z * local.y / across);
+        Derivatives::new(about_y(local), south_to_north * PI)
     }
 
     fn area(&self) -> f32 {

@@ -7,6 +7,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::Derivatives;
 use super::arithmetic::within_floats;
 use super::facet::Facet;
 use super::solid_angle::{area_pdf, area_sample};
@@ -76,6 +77,10 @@ impl Shape for Triangle {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.facet().surface(ray, hit.uv)
+    }
+
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        self.facet().derivatives()
     }
 
     fn area(&self) -> f32 {

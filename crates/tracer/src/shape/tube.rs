@@ -8,6 +8,7 @@
 //! ```
 
 use super::arithmetic::{cross_tube, double, first_in_range, rounded_surface, turn};
+use super::derivatives::{Derivatives, about_y};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3};
@@ -62,6 +63,10 @@ impl Shape for Tube {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         tube_surface(self.radius, ray, hit)
+    }
+
+    fn derivatives(&self, local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        Derivatives::new(about_y(local), Vec3::Y)
     }
 
     fn area(&self) -> f32 {

@@ -6,9 +6,9 @@ use super::large::{self, Large, Order};
 use super::merged::{self, Merged};
 use super::{Content, Object, Vertex, WorldHit};
 use crate::material::{MaterialId, MaterialTable};
-use crate::shape::AnyShape;
+use crate::shape::{AnyShape, Derivatives, Hit};
 use juggler_bvh::{Bvh, Quality, SimdLevel};
-use juggler_math::{Aabb, Ray, Transform};
+use juggler_math::{Aabb, Ray, Transform, Vec3};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -202,6 +202,20 @@ impl Level {
     ) -> Vertex {
         let vertex = self.vertex(&transform.ray_to_local(ray), hit, number, inherited, materials);
         Vertex { surface: vertex.surface.to_world(transform), ..vertex }
+    }
+
+    /// How the surface at a hit runs along its coordinates, in this level's space, and the stretch of those in object space.
+    /// `local` is that of the vertex there.
+    pub(super) fn derivatives(&self, local: Vec3, hit: &Hit, number: u32, time: f32) -> Option<(Derivatives, f32)> {
+        let (placed, number) = self.find(number);
+        let (found, stretch) = match &placed.content {
+            Content::Shape(shape) => {
+                let found = shape.derivatives(local, hit, time)?;
+                (found, found.stretch())
+            }
+            Content::Level(level) => level.derivatives(local, hit, number, time)?,
+        };
+        Some((found.through(&placed.motion.at(time)), stretch))
     }
 
     /// A box around the shape `number`, in this level's space; empty when it has no end.

@@ -12,6 +12,7 @@ use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use std::borrow::Cow;
 
 mod areas;
+mod differential;
 mod emitters;
 mod geometry;
 mod glowing;
@@ -28,6 +29,7 @@ mod precision;
 #[cfg(test)]
 mod tests;
 
+pub use differential::Differential;
 pub use emitters::{Lighting, Receiver};
 pub use geometry::Geometry;
 pub use juggler_bvh::{SimdLevel, simd_levels};

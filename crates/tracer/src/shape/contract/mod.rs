@@ -4,6 +4,7 @@ use super::{AnyShape, Shape};
 use juggler_math::testing::Random;
 use juggler_math::{DVec3, Frame, Ray, Vec3, warp};
 
+mod derivatives;
 mod descriptions;
 mod distance;
 mod extremes;

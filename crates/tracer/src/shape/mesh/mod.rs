@@ -13,6 +13,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::Derivatives;
 use super::arithmetic::within_floats;
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
@@ -183,6 +184,10 @@ impl Shape for Mesh {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let facet = self.prepared.as_ref().and_then(|p| p.facet(hit.part as usize, ray.time));
         facet.map_or_else(|| Surface::new(ray.at(hit.t), 0.0, Vec3::Y, hit.uv), |facet| facet.surface(ray, hit.uv))
+    }
+
+    fn derivatives(&self, _local: Vec3, hit: &Hit, time: f32) -> Option<Derivatives> {
+        self.prepared.as_ref()?.facet(hit.part as usize, time)?.derivatives()
     }
 
     fn area(&self) -> f32 {

@@ -11,6 +11,7 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+use super::Derivatives;
 use super::arithmetic::{double, in_range, rounded_surface};
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample};
@@ -66,6 +67,10 @@ impl Shape for Polygon {
         let uv = Vec2::new(from_first.dot(self.outline.along) as f32, from_first.dot(self.outline.across()) as f32);
         let surface = rounded_surface(self.outline.onto_plane(point), self.outline.normal, uv);
         Surface { error: surface.error + self.outline.rounding, ..surface }
+    }
+
+    fn derivatives(&self, _local: Vec3, _hit: &Hit, _time: f32) -> Option<Derivatives> {
+        Derivatives::new(self.outline.along.as_vec3(), self.outline.across().as_vec3())
     }
 
     fn area(&self) -> f32 {

@@ -1,0 +1,87 @@
+//! How what was met runs along its surface coordinates, worked out only when a material asks.
+
+use super::{Vertex, World, WorldHit};
+use crate::shape::Derivatives;
+use juggler_math::Ray;
+
+/// How a surface runs along its coordinates, world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Differential {
+    /// ∂p/∂u and ∂p/∂v, world space.
+    pub derivatives: Derivatives,
+    /// Units of the surface coordinates per unit of the world, by areas: footprints times this are in such units
+    /// (Akenine-Möller et al., Texture Level of Detail Strategies for Real-Time Ray Tracing, Ray Tracing Gems, 2019).
+    pub uv_density: f32,
+    /// Units of object space per unit of the world, likewise.
+    pub local_density: f32,
+}
+
+impl World {
+    /// How the surface at a vertex runs along its coordinates: for normal maps, anisotropy, and footprints of textures.
+    /// `ray` and `hit` are those that led to the vertex, whose material must be textured. Nothing at poles and the like.
+    pub fn differential(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Differential> {
+        let (found, local) = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
+        let stretch = found.stretch();
+        let (uv_density, local_density) = (1.0 / stretch, local / stretch);
+        let finite = stretch > 0.0 && uv_density.is_finite() && local_density.is_finite();
+        finite.then_some(Differential { derivatives: found, uv_density, local_density })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{AnyShape, Rectangle, Sphere};
+    use crate::world::tests::world_with;
+    use juggler_math::testing::{Random, close, close3};
+    use juggler_math::{Transform, Vec3};
+    use std::f32::consts::PI;
+
+    fn met(world: &World, ray: Ray) -> Option<(Vertex, Differential)> {
+        let mut found = ray;
+        let hit = world.closest(&mut found);
+        let vertex = hit.is_some().then(|| world.vertex(&ray, &hit))?;
+        Some((vertex, world.differential(&ray, &hit, &vertex)?))
+    }
+
+    #[test]
+    fn densities_count_units_of_coordinates_and_objects() {
+        let shape = AnyShape::from(Rectangle { size: [4.0, 1.0] });
+        let world = world_with(shape, Transform::scale(Vec3::splat(3.0)).unwrap(), true);
+        let (_, found) = met(&world, Ray::new(Vec3::new(0.5, 7.0, 0.2), Vec3::NEG_Y)).unwrap();
+        assert!(close3(found.derivatives.u, Vec3::X * 12.0, 1e-5) && close3(found.derivatives.v, Vec3::Z * -3.0, 1e-5));
+        assert!(close(found.uv_density, 1.0 / 6.0, 1e-6) && close(found.local_density, 1.0 / 3.0, 1e-6), "{found:?}");
+    }
+
+    /// By what is met a little further on, on a sphere that is turned, scaled and moved, and one that is an ellipsoid.
+    #[test]
+    fn steps_in_the_world_go_as_the_derivatives_say() {
+        let mut random = Random::new(751);
+        let turned = random.rotation();
+        for scale in [Vec3::splat(2.5), Vec3::new(1.0, 2.0, 0.5)] {
+            let transform = Transform::scale(scale).unwrap().then(&turned);
+            let world = world_with(Sphere { radius: 2.0 }.into(), transform, true);
+            let mut seen = 0;
+            for _ in 0..300 {
+                let from = random.unit_vector() * 50.0;
+                let aim = |at: Vec3| Ray::new(from, (at - from).normalize());
+                let Some((start, found)) = met(&world, aim(random.point(1.0))) else { continue };
+                let way = random.unit_vector().reject_from(start.surface.normal) * 2e-3;
+                let Some((end, _)) = met(&world, aim(start.surface.point + way)) else { continue };
+                let (step, uv) = (end.surface.point - start.surface.point, end.surface.uv - start.surface.uv);
+                if uv.x.abs() > 0.5 || found.derivatives.u.length() < 2.0 || step.length() > 5e-3 {
+                    continue;
+                }
+                seen += 1;
+                let told = found.derivatives.u * uv.x + found.derivatives.v * uv.y;
+                assert!((told - step).length() < 0.1 * step.length() + 2e-5, "{step} told {told}");
+            }
+            assert!(seen > 50, "{seen}");
+        }
+        // At the equator of a ball a unit of u is its girth, one of v half of that.
+        let world = world_with(Sphere { radius: 2.0 }.into(), Transform::IDENTITY, true);
+        let (_, found) = met(&world, Ray::new(Vec3::X * 9.0, Vec3::NEG_X)).unwrap();
+        assert!(close3(found.derivatives.u, Vec3::NEG_Z * 4.0 * PI, 1e-4), "{found:?}");
+        assert!(close3(found.derivatives.v, Vec3::Y * 2.0 * PI, 1e-4) && close(found.local_density, 1.0, 1e-5));
+    }
+}
