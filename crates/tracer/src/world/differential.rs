@@ -2,6 +2,7 @@
 
 use super::{Vertex, World, WorldHit};
 use crate::shape::Derivatives;
+use crate::surface::Tangents;
 use juggler_math::Ray;
 
 /// How a surface runs along its coordinates, world space.
@@ -20,11 +21,18 @@ impl World {
     /// How the surface at a vertex runs along its coordinates: for normal maps, anisotropy, and footprints of textures.
     /// `ray` and `hit` are those that led to the vertex, whose material must be textured. Nothing at poles and the like.
     pub fn differential(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Differential> {
-        let (found, local) = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
+        let [found, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
         let stretch = found.stretch();
-        let (uv_density, local_density) = (1.0 / stretch, local / stretch);
+        let (uv_density, local_density) = (1.0 / stretch, local.stretch() / stretch);
         let finite = stretch > 0.0 && uv_density.is_finite() && local_density.is_finite();
         finite.then_some(Differential { derivatives: found, uv_density, local_density })
+    }
+
+    /// What normal maps and stretched highlights stand in at a vertex; as for [`World::differential`].
+    #[inline(never)]
+    pub(super) fn tangents(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Tangents> {
+        let [world, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
+        Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v })
     }
 }
 
