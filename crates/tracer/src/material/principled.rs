@@ -344,7 +344,7 @@ impl Principled {
             clearcoat: tiles(),
             anisotropy: tiles(),
             transmission: tiles(),
-            emissive: tiles(),
+            emissive: Input::Texture("tiles".into()),
             emissive_strength: 5.0,
             opacity: tiles(),
             alpha_cutoff: Some(0.1),

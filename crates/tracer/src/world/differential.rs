@@ -39,8 +39,12 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::background::{AnyBackground, Solid};
+    use crate::material::MaterialCompiler;
     use crate::shape::{AnyShape, Rectangle, Sphere};
+    use crate::texture::TextureTable;
     use crate::world::tests::world_with;
+    use crate::world::{Lamp, Object};
     use juggler_math::testing::{Random, close, close3};
     use juggler_math::{Transform, Vec3};
     use std::f32::consts::PI;
@@ -59,6 +63,24 @@ mod tests {
         let (_, found) = met(&world, Ray::new(Vec3::new(0.5, 7.0, 0.2), Vec3::NEG_Y)).unwrap();
         assert!(close3(found.derivatives.u, Vec3::X * 12.0, 1e-5) && close3(found.derivatives.v, Vec3::Z * -3.0, 1e-5));
         assert!(close(found.uv_density, 1.0 / 6.0, 1e-6) && close(found.local_density, 1.0 / 3.0, 1e-6), "{found:?}");
+    }
+
+    #[test]
+    fn materials_that_ask_for_tangents_get_them() {
+        for (recipe, asks) in [("normal_map", true), ("bump_map", true), ("diffuse", false)] {
+            let recipe = serde_json::from_str(&format!(r#"{{"{recipe}": {{}}}}"#)).unwrap();
+            let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
+            let material = compiler.compile(&recipe).unwrap();
+            let objects = vec![Object::new(Sphere { radius: 2.0 }.into(), Transform::IDENTITY, material)];
+            let lamps = Vec::<Lamp>::new();
+            let world = World::new(objects, compiler.finish().unwrap(), lamps, AnyBackground::Solid(Solid::default()));
+            let mut ray = Ray::new(Vec3::X * 9.0, Vec3::NEG_X);
+            let hit = world.closest(&mut ray);
+            let tangents = world.vertex(&ray, &hit).tangents;
+            assert_eq!(tangents.is_some(), asks);
+            let along_u = Vec3::NEG_Z * 4.0 * PI;
+            assert!(tangents.is_none_or(|t| close3(t.u, along_u, 1e-4) && close3(t.local_u, along_u, 1e-4)));
+        }
     }
 
     /// By what is met a little further on, on a sphere that is turned, scaled and moved, and one that is an ellipsoid.
