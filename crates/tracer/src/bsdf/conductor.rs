@@ -69,7 +69,7 @@ impl Conductor {
 
     /// 1 - E.
     fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_loss(w.z, self.ggx.alpha_towards(w))
+        energy::mirror_loss(self.ggx.round_cos(w), self.ggx.mean_alpha())
     }
 
     /// A direction by visible normals, or by cosine as often as single scattering loses light.
@@ -117,7 +117,7 @@ impl Conductor {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
         }
-        let single = self.fresnel.mirrored(wo.z, self.ggx.alpha_towards(wo));
+        let single = self.fresnel.mirrored(self.ggx.round_cos(wo), self.ggx.mean_alpha());
         if self.multiple.is_black() {
             return single;
         }

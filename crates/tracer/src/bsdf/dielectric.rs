@@ -6,7 +6,8 @@
 //! the direction, light that is lost comes out on its own side as (1 - b) L(μo) L(μi) / (π L̄), and on the other as
 //! c T̄o Lo(μo) Li(μi) / (π L̄o L̄i), where b = c T̄ / L̄ on each side. As T̄o = η² T̄i (with η the index on the side of i over
 //! that on the side of o), that is reciprocal for any c; we take the largest that gives neither side more than what
-//! it transmits of what it scatters once.
+//! it transmits of what it scatters once. Tables are those of surfaces that are equally rough along both axes: brushed glass
+//! (10 : 1) misses white by up to 0.15 where it is seen from within at a grazing angle.
 
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta, one_of_two, sum};
@@ -111,7 +112,7 @@ impl Dielectric {
 
     /// L of light along `w`, for the index behind the border over that in front.
     fn lost(&self, w: Vec3, ior: f32) -> f32 {
-        energy::dielectric_loss(w.z.abs(), self.ggx.alpha_towards(w), ior)
+        energy::dielectric_loss(self.ggx.round_cos(w), self.ggx.mean_alpha(), ior)
     }
 
     fn multiple(&self, wo: Vec3, ior: f32) -> Multiple {
@@ -251,13 +252,12 @@ impl Dielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.alpha_towards(wo));
+        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.mean_alpha());
         if self.is_smooth() {
             let share = if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) };
             return self.reflection * share + self.transmission * (Rgb::WHITE - share);
         }
-        let (mut mirrored, lost) =
-            (energy::dielectric_mirrored(cos, alpha, ior), energy::dielectric_loss(cos, alpha, ior));
+        let (mut mirrored, lost) = (energy::dielectric_mirrored(cos, alpha, ior), self.lost(wo, ior));
         let mut through = 1.0 - mirrored - lost;
         if self.compensated {
             let multiple = self.multiple(wo, ior);

@@ -69,6 +69,17 @@ impl Ggx {
         if self.x == self.y { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
     }
 
+    /// The cosine of `w`, above, where the surface is stretched until both alphas are their mean: slopes along `w`, on
+    /// which masking depends, are then what they were.
+    #[inline]
+    pub fn round_cos(self, w: Vec3) -> f32 {
+        if self.x == self.y {
+            return w.z.abs();
+        }
+        let (x, y, mean) = (self.x * w.x, self.y * w.y, 0.5 * (self.x * self.x + self.y * self.y));
+        (w.z * w.z / (w.z * w.z + (x * x + y * y) / mean).max(f32::MIN_POSITIVE)).sqrt()
+    }
+
     /// One alpha that stands for both where light goes along `w`: at a grazing angle what counts is the slopes along it,
     /// head on both alike.
     #[inline]

@@ -70,7 +70,7 @@ impl ThinDielectric {
 
     /// What single scattering loses of light along `w`.
     fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_loss(w.z.abs(), self.ggx.alpha_towards(w))
+        energy::mirror_loss(self.ggx.round_cos(w), self.ggx.mean_alpha())
     }
 
     /// How much of the light that is scattered more than once is mirrored.
@@ -151,7 +151,7 @@ impl ThinDielectric {
             let share = self.share(cos);
             return self.reflection * share + self.transmission * (Rgb::WHITE - share);
         }
-        let lost = energy::mirror_loss(cos, alpha);
+        let lost = self.lost(wo);
         let share = energy::mirrored_share(cos, alpha, |cos| sum(self.share(cos)) / 3.0);
         let once = (self.reflection * share + self.transmission * (1.0 - share)) * (1.0 - lost);
         if !self.compensated {

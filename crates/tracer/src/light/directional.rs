@@ -23,11 +23,12 @@ pub struct Directional {
     /// Factor on the colour.
     #[schemars(range(min = 0))]
     pub intensity: f32,
-    /// Under which angle its disk is seen, from rim to rim, for soft shadows: 0.53 for the sun; 0 for hard shadows.
+    /// Under which angle its disk is seen, from rim to rim, for soft shadows: 0.53 for the sun;
+    /// 0, as without it, for hard shadows.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 180))]
     pub angle_degrees: f32,
-    /// How many places of the disk are asked per sample of the picture.
+    /// How many places of the disk are asked per sample of the picture; 1 without it.
     #[serde(skip_serializing_if = "is_one")]
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,

@@ -62,9 +62,9 @@ pub(super) fn examples() -> Vec<Example> {
     all
 }
 
-/// How far a compensated lobe may miss white: brushed ones are compensated by one alpha for both axes.
+/// How far a compensated lobe may miss white: brushed ones are compensated as if stretched.
 fn within(alpha: Vec2) -> f32 {
-    if alpha.x == alpha.y { 0.02 } else { 0.15 }
+    if alpha.x == alpha.y { 0.02 } else { 0.1 }
 }
 
 fn conductors(alpha: Vec2) -> Vec<Example> {
@@ -92,7 +92,11 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
         all.push(narrow(Example::new(format!("dielectric {ior} {alpha}"), Dielectric::new(ior, alpha))));
         let compensated = Example::new(format!("compensated dielectric {ior} {alpha}"), compensated);
         // At 1.01 the critical angle grazes; there the tables are too coarse for white.
-        all.push(narrow(compensated.white(within(alpha) * if ior == 1.01 { 0.0 } else { 1.0 })));
+        all.push(narrow(
+            compensated.white(
+                within(alpha) * if alpha.x == alpha.y { 1.0 } else { 1.5 } * if ior == 1.01 { 0.0 } else { 1.0 },
+            ),
+        ));
     }
     all.push(Example::new(format!("thin {alpha}"), ThinDielectric::new(1.5, alpha).tinted(pink, cyan)));
     let thin = ThinDielectric::compensated(1.5, alpha);

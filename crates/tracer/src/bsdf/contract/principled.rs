@@ -31,6 +31,16 @@ pub(super) fn examples() -> Vec<Example> {
     let mut all: Vec<Example> = vec![];
     all.extend(opaque.map(|(name, numbers)| Example::new(format!("principled {name}"), numbers.bsdf(1.5))));
     all.extend(clear.map(|(name, numbers)| Example::new(format!("principled {name}"), numbers.bsdf(1.4)).both_sides()));
+    all.extend(whites());
+    let glass = Principled { transmission: 1.0, ..white };
+    all.push(Example::new("principled white glass", glass.bsdf(1.5)).both_sides().white(0.02));
+    let pane = Principled { thin_walled: true, ..glass };
+    all.push(Example::new("principled white pane", pane.bsdf(1.5)).both_sides().white(0.02));
+    all
+}
+
+fn whites() -> Vec<Example> {
+    let white = Principled::default();
     let whites = [
         ("matt", Principled { specular: 0.0, ..white }, 1e-4),
         ("plastic", white, 0.01),
@@ -46,10 +56,5 @@ pub(super) fn examples() -> Vec<Example> {
     let named = |(name, numbers, within): (&str, Principled, f32)| {
         Example::new(format!("principled white {name}"), numbers.bsdf(1.5)).white(within)
     };
-    all.extend(whites.map(named));
-    let glass = Principled { transmission: 1.0, ..white };
-    all.push(Example::new("principled white glass", glass.bsdf(1.5)).both_sides().white(0.02));
-    let pane = Principled { thin_walled: true, ..glass };
-    all.push(Example::new("principled white pane", pane.bsdf(1.5)).both_sides().white(0.02));
-    all
+    whites.map(named).into()
 }
