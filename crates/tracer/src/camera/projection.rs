@@ -96,6 +96,11 @@ impl Projection {
         }
     }
 
+    /// Where the camera stands.
+    pub fn eye(&self) -> Vec3 {
+        self.origin
+    }
+
     /// Whether the place on the lens makes a difference.
     #[inline]
     pub fn needs_lens(&self) -> bool {

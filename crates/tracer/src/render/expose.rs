@@ -15,18 +15,25 @@ const LENS: u32 = 1;
 /// The dimension of a sample's time, beyond all that paths come to: still pictures do without it.
 const TIME: u32 = 1 << 31;
 
-/// The rays of the samples `slots` of all samples of `work`, `samples` a pixel, pixel by pixel.
-pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+/// What paths remember when they leave a camera: the solids that it is in, half way between opening and closing of the
+/// shutter.
+pub fn start(job: &Job) -> Trail {
+    const MIDDLE: f32 = 0.5;
+    Trail { inside: job.world.inside(job.camera.at(MIDDLE).eye(), MIDDLE), ..Trail::CAMERA }
+}
+
+/// The rays of the samples `slots` of all samples of `work`, `samples` a pixel, pixel by pixel; they begin with `start`.
+pub fn expose(job: &Job, start: &Trail, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+    let picture = Picture { job, start, sampler: Sampler::new(job.pattern, job.seed) };
     if job.samples == 1 {
-        return expose_centers(job, work, slots, queue);
+        return expose_centers(&picture, work, slots, queue);
     }
-    let picture = Sampler::new(job.pattern, job.seed);
     let mut places = [Vec2::ZERO; PLACES];
     let mut slot = 0;
     let mut at = slots.start;
     while at < slots.end {
         let pixel = at / samples;
-        let exposure = Pixel::new(job, work, &picture, Pixel::place(work, pixel));
+        let exposure = Pixel::new(&picture, work, Pixel::place(work, pixel));
         let count = (slots.end.min((pixel + 1) * samples) - at) as u32;
         exposure.expose(work.samples.start + (at % samples) as u32, slot..slot + count, &mut places, queue);
         slot += count;
@@ -35,8 +42,7 @@ pub fn expose(job: &Job, work: &Work, samples: u64, slots: Range<u64>, queue: &m
 }
 
 /// One ray through the centre of each of the pixels `range`.
-fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) {
-    let picture = Sampler::new(job.pattern, job.seed);
+fn expose_centers(picture: &Picture, work: &Work, range: Range<u64>, queue: &mut Queue) {
     let mut next = Pixel::place(work, range.start);
     for start in range.clone().step_by(LANES) {
         let count = LANES.min((range.end - start) as usize);
@@ -47,20 +53,28 @@ fn expose_centers(job: &Job, work: &Work, range: Range<u64>, queue: &mut Queue) 
             if next.x == work.pixels.width {
                 next = UVec2::new(0, next.y + 1);
             }
-            Pixel::new(job, work, &picture, place)
+            Pixel::new(picture, work, place)
         });
         let films = [pixels.each_ref().map(|pixel| pixel.center.x), pixels.each_ref().map(|pixel| pixel.center.y)];
         let lenses = pixels.each_ref().map(|pixel| pixel.lens(0));
-        job.camera.rays(&films, &lenses, &[0.5; LANES], count, &mut queue.rays);
+        picture.job.camera.rays(&films, &lenses, &[0.5; LANES], count, &mut queue.rays);
         let slot = (start - range.start) as u32;
         let path = |(i, pixel): (u32, &Pixel)| pixel.path(0, slot + i, 1.0);
         queue.paths.extend((0..).zip(&pixels).take(count).map(path));
     }
 }
 
+/// What all pixels have in common.
+struct Picture<'j> {
+    job: &'j Job<'j>,
+    start: &'j Trail,
+    sampler: Sampler,
+}
+
 /// One pixel of the film.
 struct Pixel<'j> {
     job: &'j Job<'j>,
+    start: &'j Trail,
     center: Vec2,
     stream: Sampler,
     /// Whether time makes a difference.
@@ -75,10 +89,11 @@ impl<'j> Pixel<'j> {
     }
 
     /// The pixel at this place in the work's rectangle.
-    fn new(job: &'j Job, work: &Work, picture: &Sampler, place: UVec2) -> Self {
+    fn new(picture: &Picture<'j>, work: &Work, place: UVec2) -> Self {
+        let Picture { job, start, sampler } = picture;
         let pixel = UVec2::new(work.pixels.x, work.pixels.y).wrapping_add(place);
         let moves = job.camera.moves() || job.world.moves();
-        Self { job, center: pixel.as_vec2() + 0.5, stream: picture.pixel(pixel), moves }
+        Self { job, start, center: pixel.as_vec2() + 0.5, stream: sampler.pixel(pixel), moves }
     }
 
     /// The numbers of a sample from `dimension` on.
@@ -103,7 +118,7 @@ impl<'j> Pixel<'j> {
             weight: Rgb::splat(weight),
             depth: 0,
             sampler: self.sampler(sample, FILM + LENS),
-            trail: Trail::CAMERA,
+            trail: *self.start,
             slot,
         }
     }

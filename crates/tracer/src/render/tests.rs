@@ -16,6 +16,7 @@ use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
 mod blur;
+mod inside;
 
 pub fn read<T: DeserializeOwned>(json: &str) -> T {
     serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))

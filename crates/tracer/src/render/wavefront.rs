@@ -6,10 +6,10 @@
 //! that size wherever it stands. So the order in which a sample's contributions are added follows from its
 //! own tree of rays alone. The same cuts bound the memory.
 
-use super::expose::expose;
+use super::expose::{expose, start};
 use super::{Control, Job, Rays, Stopped, Work};
 use crate::film::{Accumulator, Rect, Run, Tile, runs};
-use crate::integrator::{Emit, Harvest, Queue};
+use crate::integrator::{Emit, Harvest, Queue, Trail};
 use crate::world::{Shadows, WorldHit};
 use juggler_math::Rgb;
 use std::ops::Range;
@@ -26,6 +26,8 @@ const WAITING: usize = 16_384;
 /// The buffers of one thread.
 pub struct Engine<'j> {
     job: &'j Job<'j>,
+    /// How paths begin.
+    start: Trail,
     hits: Vec<WorldHit>,
     through: Vec<Rgb>,
     harvest: Harvest,
@@ -38,6 +40,7 @@ impl<'j> Engine<'j> {
     pub fn new(job: &'j Job<'j>) -> Self {
         Self {
             job,
+            start: start(job),
             hits: Vec::new(),
             through: Vec::new(),
             harvest: Harvest::default(),
@@ -89,7 +92,7 @@ impl<'j> Engine<'j> {
     fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>) {
         self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
         let mut camera = self.spare.pop().unwrap_or_default();
-        expose(self.job, work, samples, slots, &mut camera);
+        expose(self.job, &self.start, work, samples, slots, &mut camera);
         self.stack.push(camera);
         while let Some(queue) = self.stack.pop() {
             self.segment(queue);

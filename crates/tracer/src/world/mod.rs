@@ -16,6 +16,7 @@ mod differential;
 mod emitters;
 mod geometry;
 mod glowing;
+mod inside;
 mod items;
 mod lamp;
 mod large;
