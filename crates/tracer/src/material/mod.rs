@@ -113,6 +113,7 @@ pub trait Material: Send + Sync {
 
 closed_set! {
     /// Every material. In JSON: `{"phong": {"diffuse": [0.8, 0.1, 0.1]}}`.
+    #[allow(clippy::large_enum_variant, reason = "descriptions are few, and those within others are boxed")]
     pub enum AnyMaterial: Material {
         phong::Phong,
         diffuse::Diffuse,

@@ -150,9 +150,13 @@ impl MaterialTable {
             id = match compiled {
                 Compiled::Phong(phong) => {
                     let lobe = phong.eval(&self.textures, || view.lookup());
-                    return Self::classic(&lobe, &view, shade);
+                    Self::classic(&lobe, &view, &mut shade);
+                    return shade;
                 }
-                Compiled::Physical(physical) => return self.physical(physical, &view, shade),
+                Compiled::Physical(physical) => {
+                    self.physical(physical, &view, &mut shade);
+                    return shade;
+                }
                 Compiled::NormalMap(map) => {
                     view.normal = map.turned(&self.textures, &view);
                     map.material
@@ -182,23 +186,24 @@ impl MaterialTable {
     }
 
     /// What is nothing but a scattering function, in its frame.
-    fn physical(&self, physical: &Physical, view: &View, shade: Shade) -> Shade {
+    fn physical(&self, physical: &Physical, view: &View, shade: &mut Shade) {
         let mut normal = facing_normal(view, view.normal);
         if physical.interior().is_some() {
             let is_mapped = view.normal != view.surface.shading_normal;
             let outwards = if view.is_outside() { normal } else { -normal };
             normal = if is_mapped { outwards } else { view.normal };
         }
-        let frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
-        let bsdf = physical.bsdf(&self.textures, view);
-        Shade { frame, bsdf, transmissive: physical.is_transmissive(), ..shade }
+        shade.frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
+        shade.bsdf = physical.bsdf(&self.textures, view);
+        shade.transmissive = physical.is_transmissive();
     }
 
     /// The classic material as physics would have it.
-    fn classic(lobe: &PhongLobe, view: &View, shade: Shade) -> Shade {
-        let bsdf = lobe.bsdf(view.is_outside());
-        let frame = Frame::around(facing_normal(view, view.normal));
-        Shade { frame, emission: shade.emission + lobe.emission, bsdf, lamp_scale: lobe.lamp_scale(), ..shade }
+    fn classic(lobe: &PhongLobe, view: &View, shade: &mut Shade) {
+        shade.frame = Frame::around(facing_normal(view, view.normal));
+        shade.emission += lobe.emission;
+        shade.bsdf = lobe.bsdf(view.is_outside());
+        shade.lamp_scale = lobe.lamp_scale();
     }
 
     /// What a shadow ray of the classic integrator keeps when it crosses material `id` at this point: its
