@@ -35,6 +35,19 @@ pub struct Footprint {
     pub uv: f32,
 }
 
+/// How a surface runs along its coordinates at a point, normals aside: what normal maps and stretched highlights stand in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangents {
+    /// ∂p/∂u, world space; need not be unit.
+    pub u: Vec3,
+    /// ∂p/∂v, world space; need not be unit, nor at a right angle to `u`.
+    pub v: Vec3,
+    /// ∂p/∂u in object space.
+    pub local_u: Vec3,
+    /// ∂p/∂v in object space.
+    pub local_v: Vec3,
+}
+
 impl Surface {
     /// A point with one normal.
     pub fn new(point: Vec3, error: f32, normal: Vec3, uv: Vec2) -> Self {

@@ -89,8 +89,15 @@ fn glows(material: &AnyMaterial) -> bool {
         AnyMaterial::Checkerboard(board) => inline(&board.even) || inline(&board.odd),
         AnyMaterial::Mask(mask) => inline(&mask.material),
         AnyMaterial::Mix(mix) => inline(&mix.a) || inline(&mix.b),
-        AnyMaterial::Diffuse(_) | AnyMaterial::Conductor(_) | AnyMaterial::Dielectric(_) | AnyMaterial::Boundary(_) => {
-            false
-        }
+        AnyMaterial::NormalMap(map) => inline(&map.material),
+        AnyMaterial::BumpMap(map) => inline(&map.material),
+        AnyMaterial::Principled(principled) => principled.glows(),
+        AnyMaterial::Diffuse(_)
+        | AnyMaterial::Conductor(_)
+        | AnyMaterial::Dielectric(_)
+        | AnyMaterial::Plastic(_)
+        | AnyMaterial::Velvet(_)
+        | AnyMaterial::Translucent(_)
+        | AnyMaterial::Boundary(_) => false,
     }
 }

@@ -1,5 +1,6 @@
 //! What descriptions become: all names looked up.
 
+use super::bump_map::CompiledBumpMap;
 use super::checkerboard::CompiledCheckerboard;
 use super::conductor::CompiledConductor;
 use super::dielectric::CompiledDielectric;
@@ -7,7 +8,12 @@ use super::diffuse::CompiledDiffuse;
 use super::emissive::CompiledEmissive;
 use super::mask::CompiledMask;
 use super::mix::CompiledMix;
+use super::normal_map::CompiledNormalMap;
 use super::phong::CompiledPhong;
+use super::plastic::CompiledPlastic;
+use super::principled::CompiledPrincipled;
+use super::translucent::CompiledTranslucent;
+use super::velvet::CompiledVelvet;
 use super::{MaterialId, View};
 use crate::bsdf::Bsdf;
 use crate::medium::Interior;
@@ -26,6 +32,10 @@ pub enum Compiled {
     Mix(CompiledMix),
     /// Another one with holes.
     Mask(CompiledMask),
+    /// Another one with normals from a texture.
+    NormalMap(CompiledNormalMap),
+    /// Another one raised by a texture.
+    BumpMap(CompiledBumpMap),
     /// Gives off light.
     Emissive(CompiledEmissive),
     /// No surface, only what is behind it.
@@ -41,6 +51,14 @@ pub enum Physical {
     Conductor(CompiledConductor),
     /// Glass.
     Dielectric(CompiledDielectric),
+    /// Coated.
+    Plastic(CompiledPlastic),
+    /// Cloth.
+    Velvet(CompiledVelvet),
+    /// Paper.
+    Translucent(CompiledTranslucent),
+    /// What glTF describes.
+    Principled(Box<CompiledPrincipled>),
 }
 
 impl From<Physical> for Compiled {
@@ -57,19 +75,50 @@ impl Physical {
             Self::Diffuse(diffuse) => diffuse.bsdf(textures, view),
             Self::Conductor(conductor) => conductor.bsdf(textures, view),
             Self::Dielectric(dielectric) => dielectric.bsdf(textures, view),
+            Self::Plastic(plastic) => plastic.bsdf(textures, view),
+            Self::Velvet(velvet) => velvet.bsdf(textures, view),
+            Self::Translucent(translucent) => translucent.bsdf(textures, view),
+            Self::Principled(principled) => principled.bsdf(textures, view),
         }
     }
 
-    /// Whether light goes through it, so that its inside and its outside differ.
+    /// Whether light goes through it.
     pub fn is_transmissive(&self) -> bool {
-        matches!(self, Self::Dielectric(_))
+        match self {
+            Self::Dielectric(_) | Self::Translucent(_) => true,
+            Self::Principled(principled) => principled.is_transmissive(),
+            Self::Diffuse(_) | Self::Conductor(_) | Self::Plastic(_) | Self::Velvet(_) => false,
+        }
     }
 
-    /// What is behind its surface.
-    fn interior(&self) -> Option<Interior> {
+    /// What is behind its surface, whose inside and outside then differ.
+    pub fn interior(&self) -> Option<Interior> {
         match self {
-            Self::Diffuse(_) | Self::Conductor(_) => None,
             Self::Dielectric(dielectric) => dielectric.interior,
+            Self::Principled(principled) => principled.interior,
+            Self::Diffuse(_) | Self::Conductor(_) | Self::Plastic(_) | Self::Velvet(_) | Self::Translucent(_) => None,
+        }
+    }
+
+    /// How far its frame is turned from u towards v, in whole turns; `None` where that makes no difference.
+    pub fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
+        match self {
+            Self::Conductor(conductor) => conductor.roughness.turns(textures, view),
+            Self::Dielectric(dielectric) => dielectric.roughness.turns(textures, view),
+            Self::Plastic(plastic) => plastic.roughness.turns(textures, view),
+            Self::Principled(principled) => principled.turns(textures, view),
+            Self::Diffuse(_) | Self::Velvet(_) | Self::Translucent(_) => None,
+        }
+    }
+
+    /// Whether it matters which way along the surface is which.
+    fn is_stretched(&self) -> bool {
+        match self {
+            Self::Conductor(conductor) => conductor.roughness.is_stretched(),
+            Self::Dielectric(dielectric) => dielectric.roughness.is_stretched(),
+            Self::Plastic(plastic) => plastic.roughness.is_stretched(),
+            Self::Principled(principled) => principled.is_stretched(),
+            Self::Diffuse(_) | Self::Velvet(_) | Self::Translucent(_) => false,
         }
     }
 
@@ -78,14 +127,28 @@ impl Physical {
             Self::Diffuse(diffuse) => diffuse.is_textured(),
             Self::Conductor(conductor) => conductor.is_textured(),
             Self::Dielectric(dielectric) => dielectric.is_textured(),
+            Self::Plastic(plastic) => plastic.is_textured(),
+            Self::Velvet(velvet) => velvet.is_textured(),
+            Self::Translucent(translucent) => translucent.is_textured(),
+            Self::Principled(principled) => principled.is_textured(),
         }
     }
 }
 
 impl Compiled {
+    /// Whether it must know how the surface runs along its coordinates, the materials in it not counted.
+    pub fn needs_tangents(&self) -> bool {
+        match self {
+            Self::Physical(physical) => physical.is_stretched(),
+            Self::NormalMap(_) | Self::BumpMap(_) => true,
+            _ => false,
+        }
+    }
+
     /// Whether it differs from place to place, the materials in it not counted.
     pub fn is_textured(&self) -> bool {
         match self {
+            Self::NormalMap(_) | Self::BumpMap(_) => true,
             Self::Phong(phong) => phong.is_textured(),
             Self::Physical(physical) => physical.is_textured(),
             Self::Checkerboard(_) | Self::Mix(_) => true,
@@ -111,6 +174,8 @@ impl Compiled {
             Self::Checkerboard(board) => board.choices().to_vec(),
             Self::Mix(mix) => mix.choices().to_vec(),
             Self::Mask(mask) => vec![mask.material],
+            Self::NormalMap(map) => vec![map.material],
+            Self::BumpMap(map) => vec![map.material],
             Self::Emissive(emissive) => vec![emissive.material],
         }
     }

@@ -95,6 +95,10 @@ impl Resolver for MaterialCompiler {
             MaterialRef::Inline(material) => self.compile(material).map_err(|error| error.within(field)),
         }
     }
+
+    fn within(&mut self, compiled: Compiled) -> MaterialId {
+        self.table.push(compiled)
+    }
 }
 
 #[cfg(test)]

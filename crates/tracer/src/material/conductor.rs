@@ -7,12 +7,13 @@
 //! Or by measured numbers, `eta` and `k`, or by colours, `reflectance` (head on) and `edge_tint`.
 
 use super::error::in_range;
-use super::input::{check_number, check_share, fraction, share};
+use super::input::{check_share, share};
+use super::roughness::Roughness;
 use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
 use crate::bsdf::metals::Metal;
 use crate::bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
 use crate::texture::{Input, Lookup, Slot, TextureTable};
-use juggler_math::{Rgb, Vec2};
+use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,8 @@ pub struct Conductor {
     pub roughness: Input<f32>,
     /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
     pub anisotropy: Input<f32>,
+    /// Turns that direction from u towards v, in whole turns.
+    pub anisotropy_rotation: Input<f32>,
     /// Gives back what light loses between the grooves of a rough surface: white metal stays white. Off, as most
     /// renderers have it, rough metal is darker.
     pub energy_compensation: bool,
@@ -77,6 +80,7 @@ impl Default for Conductor {
             grazing: None,
             roughness: 0.0.into(),
             anisotropy: 0.0.into(),
+            anisotropy_rotation: 0.0.into(),
             energy_compensation: true,
         }
     }
@@ -86,8 +90,8 @@ impl Default for Conductor {
 #[derive(Clone, Debug)]
 pub struct CompiledConductor {
     color: Color,
-    roughness: Slot<f32>,
-    anisotropy: Slot<f32>,
+    /// Of its surface.
+    pub roughness: Roughness,
     compensated: bool,
     /// What holds everywhere, where nothing is a texture.
     fixed: Option<ConductorLobe>,
@@ -109,13 +113,11 @@ impl Material for Conductor {
         check_share("reflectance", &self.reflectance)?;
         check_share("edge_tint", &self.edge_tint)?;
         check_share("grazing", &self.grazing.unwrap_or_default().into())?;
-        check_number("roughness", &self.roughness, 0.0, 1.0)?;
-        check_number("anisotropy", &self.anisotropy, -1.0, 1.0)?;
         let textures = resolver.textures();
+        let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
         let mut compiled = CompiledConductor {
             color: self.color(textures)?,
-            roughness: textures.resolve("roughness", &self.roughness)?,
-            anisotropy: textures.resolve("anisotropy", &self.anisotropy)?,
+            roughness: Roughness::new(textures, roughness)?,
             compensated: self.energy_compensation,
             fixed: None,
         };
@@ -168,12 +170,7 @@ impl CompiledConductor {
             Color::Tinted(head_on, edge) => Fresnel::tinted(share(textures, head_on, at), share(textures, edge, at)),
             Color::Schlick(head_on, f90) => Fresnel::Schlick { f0: share(textures, head_on, at), f90: *f90 },
         };
-        let roughness = fraction(textures, &self.roughness, at);
-        let anisotropy = match &self.anisotropy {
-            Slot::Value(value) => *value,
-            slot => textures.number(slot, at).clamp(-1.0, 1.0),
-        };
-        let alpha = stretched(roughness, anisotropy);
+        let alpha = self.roughness.alpha(textures, at);
         if self.compensated { ConductorLobe::compensated(fresnel, alpha) } else { ConductorLobe::new(fresnel, alpha) }
     }
 
@@ -184,20 +181,8 @@ impl CompiledConductor {
             Color::Tinted(head_on, edge) => head_on.is_texture() || edge.is_texture(),
             Color::Schlick(head_on, _) => head_on.is_texture(),
         };
-        colors || self.roughness.is_texture() || self.anisotropy.is_texture()
+        colors || self.roughness.is_textured()
     }
-}
-
-/// Widths of GGX along u and v (Burley, Physically Based Shading at Disney, 2012, section 5.4, with the sign to
-/// tell along from across).
-pub(super) fn stretched(roughness: f32, anisotropy: f32) -> Vec2 {
-    let alpha = roughness * roughness;
-    if anisotropy == 0.0 {
-        return Vec2::splat(alpha);
-    }
-    let aspect = (1.0 - 0.9 * anisotropy.abs()).sqrt();
-    let (long, short) = ((alpha / aspect).min(1.0), alpha * aspect);
-    if anisotropy > 0.0 { Vec2::new(long, short) } else { Vec2::new(short, long) }
 }
 
 impl MetalName {

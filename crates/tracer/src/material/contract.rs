@@ -2,14 +2,22 @@
 
 use super::*;
 use crate::bsdf::{Cone, Highlight, Phong as PhongLobe};
+use crate::surface::Tangents;
 use crate::texture::AnyTexture;
-use juggler_math::{Rgb, Vec2, Vec3};
+use juggler_math::{Frame, Rgb, Vec2, Vec3};
+use std::collections::BTreeMap;
 use std::f32::consts::FRAC_1_PI;
 
+mod examples;
+mod maps;
+
 fn textures() -> TextureTable {
-    let json = r#"{"checker": {"size": 1, "even": [0.2, 0.4, 0.6], "odd": [0, 0, 0]}}"#;
-    let tiles: AnyTexture = serde_json::from_str(json).unwrap();
-    TextureTable::new([("tiles".to_owned(), tiles)])
+    let json = r#"{"tiles": {"checker": {"size": 1, "even": [0.2, 0.4, 0.6], "odd": [0, 0, 0]}},
+        "wild": {"checker": {"size": 1, "even": [-3, 2, 5], "odd": [7, -1e30, 0.5]}},
+        "waves": {"wave": {}}, "u and v": {"uv": {}}, "x, y and z": {"uv": {"space": "local"}},
+        "straight up": {"constant": {"color": [0.5, 0.5, 1]}}}"#;
+    let named: BTreeMap<String, AnyTexture> = serde_json::from_str(json).unwrap();
+    TextureTable::new(named)
 }
 
 fn at(x: f32) -> Surface {

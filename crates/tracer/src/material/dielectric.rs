@@ -4,9 +4,9 @@
 //! {"dielectric": {"ior": 1.5, "roughness": 0.1, "medium": {"color": [0.5, 0.9, 0.6], "distance": 2}}}
 //! ```
 
-use super::conductor::stretched;
 use super::error::in_range;
-use super::input::{check_number, check_share, fraction, share};
+use super::input::{check_share, share};
+use super::roughness::Roughness;
 use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
 use crate::bsdf::{Bsdf, Dielectric as DielectricLobe, ThinDielectric};
 use crate::medium::{Interior, Medium};
@@ -26,6 +26,8 @@ pub struct Dielectric {
     pub roughness: Input<f32>,
     /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
     pub anisotropy: Input<f32>,
+    /// Turns that direction from u towards v, in whole turns.
+    pub anisotropy_rotation: Input<f32>,
     /// Filter of what is mirrored: white in nature.
     pub reflection_tint: Input<Rgb>,
     /// Filter of what goes through the surface: white in nature, where colour comes from the `medium`.
@@ -48,6 +50,7 @@ impl Default for Dielectric {
             ior: 1.5,
             roughness: 0.0.into(),
             anisotropy: 0.0.into(),
+            anisotropy_rotation: 0.0.into(),
             reflection_tint: Rgb::WHITE.into(),
             transmission_tint: Rgb::WHITE.into(),
             thin: false,
@@ -62,8 +65,8 @@ impl Default for Dielectric {
 #[derive(Clone, Debug)]
 pub struct CompiledDielectric {
     ior: f32,
-    roughness: Slot<f32>,
-    anisotropy: Slot<f32>,
+    /// Of its surface.
+    pub roughness: Roughness,
     reflection: Slot<Rgb>,
     transmission: Slot<Rgb>,
     compensated: bool,
@@ -78,16 +81,14 @@ impl Material for Dielectric {
 
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         in_range("ior", self.ior, 0.1, 10.0)?;
-        check_number("roughness", &self.roughness, 0.0, 1.0)?;
-        check_number("anisotropy", &self.anisotropy, -1.0, 1.0)?;
         check_share("reflection_tint", &self.reflection_tint)?;
         check_share("transmission_tint", &self.transmission_tint)?;
         let medium = super::boundary::checked(&self.medium)?;
         let textures = resolver.textures();
+        let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
         Ok(Physical::Dielectric(CompiledDielectric {
             ior: self.ior,
-            roughness: textures.resolve("roughness", &self.roughness)?,
-            anisotropy: textures.resolve("anisotropy", &self.anisotropy)?,
+            roughness: Roughness::new(textures, roughness)?,
             reflection: textures.resolve("reflection_tint", &self.reflection_tint)?,
             transmission: textures.resolve("transmission_tint", &self.transmission_tint)?,
             compensated: self.energy_compensation,
@@ -109,11 +110,7 @@ impl CompiledDielectric {
     }
 
     fn at(&self, textures: &TextureTable, at: &Lookup, view: &View) -> Bsdf {
-        let anisotropy = match &self.anisotropy {
-            Slot::Value(value) => *value,
-            slot => textures.number(slot, at).clamp(-1.0, 1.0),
-        };
-        let alpha = stretched(fraction(textures, &self.roughness, at), anisotropy);
+        let alpha = self.roughness.alpha(textures, at);
         let (reflection, transmission) =
             (share(textures, &self.reflection, at), share(textures, &self.transmission, at));
         if self.interior.is_none() {
@@ -127,7 +124,7 @@ impl CompiledDielectric {
     /// Whether it differs from place to place.
     pub fn is_textured(&self) -> bool {
         let colors = self.reflection.is_texture() || self.transmission.is_texture();
-        colors || self.roughness.is_texture() || self.anisotropy.is_texture()
+        colors || self.roughness.is_textured()
     }
 }
 

@@ -1,7 +1,7 @@
 //! A matte surface.
 //!
 //! ```json
-//! {"diffuse": {"reflectance": [0.8, 0.2, 0.1], "roughness": 0}}
+//! {"diffuse": {"reflectance": [0.8, 0.2, 0.1], "roughness": 0.3}}
 //! ```
 
 use super::input::{check_number, check_share, fraction, share};
@@ -57,8 +57,9 @@ impl CompiledDiffuse {
             return Lambert { albedo }.into();
         }
         let at = view.lookup();
-        let _roughness = fraction(textures, &self.roughness, &at);
-        Lambert { albedo: share(textures, &self.reflectance, &at) }.into()
+        let mut bsdf = Bsdf::new();
+        bsdf.push_matt(share(textures, &self.reflectance, &at), fraction(textures, &self.roughness, &at), 1.0);
+        bsdf
     }
 
     /// Whether it differs from place to place.

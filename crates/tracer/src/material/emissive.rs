@@ -67,11 +67,16 @@ impl Material for Emissive {
             Some(material) => resolver.material("material", material)?,
             None => MaterialId::NONE,
         };
-        Ok(Compiled::Emissive(CompiledEmissive { radiance, scale: self.scale, sides: self.sides, material }))
+        Ok(Compiled::Emissive(CompiledEmissive::new(radiance, self.scale, self.sides, material)))
     }
 }
 
 impl CompiledEmissive {
+    /// Of numbers that have been checked.
+    pub fn new(radiance: Slot<Rgb>, scale: f32, sides: Sides, material: MaterialId) -> Self {
+        Self { radiance, scale, sides, material }
+    }
+
     /// Radiance towards the viewer.
     pub fn emission(&self, textures: &TextureTable, view: &View) -> Rgb {
         if self.sides == Sides::Front && !view.is_outside() {
@@ -114,6 +119,12 @@ impl Glow {
     pub fn and(self, other: Self) -> Self {
         let sides = if self.sides == other.sides { self.sides } else { Sides::Both };
         Self { radiance: self.radiance.filter(|_| self.radiance == other.radiance), sides }
+    }
+
+    /// The same, but here and not there: whoever wants to know asks at each place.
+    #[must_use]
+    pub fn somewhere(self) -> Self {
+        Self { radiance: None, ..self }
     }
 }
 

@@ -4,6 +4,7 @@
 //! {"mask": {"opacity": "leaf outline", "material": "leaf"}}
 //! ```
 
+use super::error::in_range;
 use super::input::{check_number, fraction};
 use super::{Compiled, Material, MaterialError, MaterialId, MaterialRef, Resolver, View};
 use crate::texture::{Input, Slot, TextureTable};
@@ -16,13 +17,17 @@ use serde::{Deserialize, Serialize};
 pub struct Mask {
     /// 1 where the material is, 0 where it is not.
     pub opacity: Input<f32>,
+    /// Makes edges sharp: what is less opaque is not there at all, and what is as opaque or more is there wholly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1))]
+    pub cutoff: Option<f32>,
     /// The material.
     pub material: MaterialRef,
 }
 
 impl Default for Mask {
     fn default() -> Self {
-        Self { opacity: 1.0.into(), material: MaterialRef::default() }
+        Self { opacity: 1.0.into(), cutoff: None, material: MaterialRef::default() }
     }
 }
 
@@ -30,6 +35,7 @@ impl Default for Mask {
 #[derive(Clone, Debug)]
 pub struct CompiledMask {
     opacity: Slot<f32>,
+    cutoff: Option<f32>,
     /// The material.
     pub material: MaterialId,
 }
@@ -41,18 +47,32 @@ impl Material for Mask {
 
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_number("opacity", &self.opacity, 0.0, 1.0)?;
+        in_range("cutoff", self.cutoff.unwrap_or_default(), 0.0, 1.0)?;
         let opacity = resolver.textures().resolve("opacity", &self.opacity)?;
         let material = resolver.material("material", &self.material)?;
-        Ok(Compiled::Mask(CompiledMask { opacity, material }))
+        Ok(Compiled::Mask(CompiledMask::new(opacity, self.cutoff, material)))
     }
 }
 
 impl CompiledMask {
+    /// Of numbers that have been checked.
+    pub fn new(opacity: Slot<f32>, cutoff: Option<f32>, material: MaterialId) -> Self {
+        let sharp = |opacity: f32| cutoff.map_or(opacity, |cutoff| f32::from(opacity >= cutoff));
+        let opacity = match opacity {
+            Slot::Value(opacity) => Slot::Value(sharp(opacity)),
+            texture => texture,
+        };
+        Self { opacity, cutoff, material }
+    }
+
     /// Share of light that meets the material.
     pub fn opacity(&self, textures: &TextureTable, view: &View) -> f32 {
         match &self.opacity {
             Slot::Value(opacity) => *opacity,
-            slot => fraction(textures, slot, &view.lookup()),
+            slot => {
+                let opacity = fraction(textures, slot, &view.lookup());
+                self.cutoff.map_or(opacity, |cutoff| f32::from(opacity >= cutoff))
+            }
         }
     }
 
@@ -71,6 +91,7 @@ impl CompiledMask {
 impl Mask {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        vec![Self::default(), Self { opacity: Input::Texture("tiles".into()), ..Self::default() }]
+        let leaf = Self { opacity: Input::Texture("tiles".into()), ..Self::default() };
+        vec![Self::default(), Self { cutoff: Some(0.3), ..leaf.clone() }, leaf]
     }
 }

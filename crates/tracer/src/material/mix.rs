@@ -52,15 +52,20 @@ impl Material for Mix {
 impl CompiledMix {
     /// The material that `view.pick` meets, and that number stretched to the unit interval again.
     pub fn pick(&self, textures: &TextureTable, view: &View) -> (MaterialId, f32) {
-        let amount = match &self.amount {
-            Slot::Value(amount) => *amount,
-            slot => fraction(textures, slot, &view.lookup()),
-        };
+        let amount = self.amount(textures, view);
         let below_one = |u: f32| u.min(1f32.next_down());
         if view.pick < amount {
             (self.b, below_one(view.pick / amount))
         } else {
             (self.a, below_one((view.pick - amount) / (1.0 - amount)))
+        }
+    }
+
+    /// Share of the second.
+    pub fn amount(&self, textures: &TextureTable, view: &View) -> f32 {
+        match &self.amount {
+            Slot::Value(amount) => *amount,
+            slot => fraction(textures, slot, &view.lookup()),
         }
     }
 

@@ -6,7 +6,9 @@ use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::{Deserialize, Deserializer, Serialize};
 
+mod average;
 mod boundary;
+mod bump_map;
 mod checkerboard;
 mod compiled;
 mod compiler;
@@ -18,9 +20,16 @@ mod error;
 mod input;
 mod mask;
 mod mix;
+mod normal_map;
 mod phong;
+mod plastic;
+mod principled;
+mod roughness;
 mod shade;
 mod table;
+mod tangent;
+mod translucent;
+mod velvet;
 
 #[cfg(test)]
 mod contract;
@@ -90,6 +99,8 @@ pub trait Resolver {
     fn textures(&self) -> &TextureTable;
     /// Compiles (once) the material that `field` refers to.
     fn material(&mut self, field: &'static str, material: &MaterialRef) -> Result<MaterialId, MaterialError>;
+    /// Takes what lies within the one that is being compiled and has no description of its own.
+    fn within(&mut self, compiled: Compiled) -> MaterialId;
 }
 
 /// A recipe.
@@ -102,15 +113,22 @@ pub trait Material: Send + Sync {
 
 closed_set! {
     /// Every material. In JSON: `{"phong": {"diffuse": [0.8, 0.1, 0.1]}}`.
+    #[allow(clippy::large_enum_variant, reason = "descriptions are few, and those within others are boxed")]
     pub enum AnyMaterial: Material {
         phong::Phong,
         diffuse::Diffuse,
         conductor::Conductor,
         dielectric::Dielectric,
+        plastic::Plastic,
+        velvet::Velvet,
+        translucent::Translucent,
+        principled::Principled,
         emissive::Emissive,
         checkerboard::Checkerboard,
         mask::Mask,
         mix::Mix,
+        normal_map::NormalMap,
+        bump_map::BumpMap,
         boundary::Boundary,
     }
 }

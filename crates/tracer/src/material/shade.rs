@@ -2,7 +2,7 @@
 
 use super::lookup;
 use crate::bsdf::{Bsdf, fresnel};
-use crate::surface::Surface;
+use crate::surface::{Surface, Tangents};
 use crate::texture::Lookup;
 use juggler_math::{Frame, Rgb, Vec3, hash};
 
@@ -14,6 +14,10 @@ const LEAST_RISE: f32 = 0.01;
 pub struct View<'a> {
     /// The surface, world space, normals as the shape gives them.
     pub surface: &'a Surface,
+    /// How the surface runs along its coordinates, where that is known.
+    pub tangents: Option<&'a Tangents>,
+    /// Unit shading normal on the side of the surface's own, as maps have turned it by now.
+    pub normal: Vec3,
     /// Unit, towards the viewer, world space.
     pub wo: Vec3,
     /// Index of refraction around the object, whatever the side that is looked at.
@@ -28,7 +32,8 @@ impl<'a> View<'a> {
     pub fn of(surface: &'a Surface) -> Self {
         let [x, y, z] = surface.point.to_array().map(f32::to_bits);
         let pick = hash::unit_f32(hash::combine(hash::combine(x, y), z));
-        View { surface, wo: surface.normal, around_ior: 1.0, pick }
+        let normal = surface.shading_normal;
+        View { surface, tangents: None, normal, wo: surface.normal, around_ior: 1.0, pick }
     }
 
     /// Whether it is looked at from the side to which the true normal points.
@@ -49,12 +54,12 @@ pub struct Shade {
     pub emission: Rgb,
     /// Share of light that meets it; the rest goes straight on as if nothing were there. 0 to 1.
     pub opacity: f32,
-    /// Frame of the scattering function. Its z is the shading normal: on the viewer's side of an opaque thing, on the
-    /// outside of one that light goes through.
+    /// Frame of the scattering function. Its z is the shading normal: on the outside of what has an inside, on the viewer's
+    /// side of all else.
     pub frame: Frame,
     /// How light is scattered.
     pub bsdf: Bsdf,
-    /// Whether light may come through, so that the frame stands on the outside, whoever looks.
+    /// Whether light may come through.
     pub transmissive: bool,
     /// Factor on what the scene's lights bring (not shapes that glow): π for the classic material, whose lights always
     /// were so measured that one of radiance 1 makes a white surface white.

@@ -1,7 +1,7 @@
 //! All materials of a world, ready to be asked.
 
 use super::shade::facing_normal;
-use super::{Compiled, Glow, MaterialId, Shade, View, lookup};
+use super::{Compiled, Glow, MaterialId, Physical, Shade, View, lookup, tangent};
 use crate::bsdf::Phong as PhongLobe;
 use crate::medium::{Interior, InteriorId};
 use crate::surface::Surface;
@@ -29,6 +29,8 @@ struct Facts {
     holes: bool,
     /// It differs from place to place.
     textured: bool,
+    /// It must know how the surface runs along its coordinates.
+    tangents: bool,
     /// How it shines, if it does.
     glow: Option<Glow>,
     /// What is behind it.
@@ -36,7 +38,8 @@ struct Facts {
 }
 
 impl Facts {
-    const NONE: Self = Self { transparent: false, holes: false, textured: false, glow: None, interior: None };
+    const NONE: Self =
+        Self { transparent: false, holes: false, textured: false, tangents: false, glow: None, interior: None };
 }
 
 impl MaterialTable {
@@ -53,11 +56,16 @@ impl MaterialTable {
             _ => false,
         };
         let classic = matches!(&compiled, Compiled::Phong(material) if material.is_transparent());
+        let holes = holes || any(|part| part.holes);
+        let tangents = compiled.needs_tangents() || any(|part| part.tangents);
         let facts = Facts {
             transparent: holes || classic || any(|part| part.transparent),
-            holes: holes || any(|part| part.holes),
-            textured: compiled.is_textured() || any(|part| part.textured),
-            glow: self.glow_of(&compiled),
+            holes,
+            // Tangents are found by the point in object space, which is left out where nothing differs.
+            textured: tangents || compiled.is_textured() || any(|part| part.textured),
+            tangents,
+            // What shines has the same radiance everywhere only where it is there for sure.
+            glow: self.glow_of(&compiled).map(|glow| if holes { glow.somewhere() } else { glow }),
             interior: None,
         };
         let interior = self.interior_of(&compiled, &parts);
@@ -69,6 +77,11 @@ impl MaterialTable {
     /// The textures that its materials use.
     pub fn textures(&self) -> &TextureTable {
         &self.textures
+    }
+
+    /// What a material has become; `None` for a number that is no material.
+    pub(super) fn compiled(&self, id: MaterialId) -> Option<&Compiled> {
+        self.materials.get(id.0 as usize)
     }
 
     fn facts(&self, id: MaterialId) -> Facts {
@@ -98,17 +111,16 @@ impl MaterialTable {
 
     fn glow_of(&self, compiled: &Compiled) -> Option<Glow> {
         let glows = || compiled.parts().into_iter().filter_map(|part| self.facts(part).glow);
-        // What shines here and not there shines somehow: whoever wants to know asks at each place.
-        let somewhere = |glow: Glow| Glow { radiance: None, ..glow };
         match compiled {
             Compiled::Phong(phong) => phong.glow(),
             Compiled::Physical(_) | Compiled::Boundary(_) => None,
             Compiled::Emissive(emissive) => match glows().next() {
                 None => Some(emissive.glow()).filter(|glow| glow.radiance.is_none_or(|light| !light.is_black())),
-                Some(other) => Some(somewhere(emissive.glow().and(other))),
+                Some(other) => Some(emissive.glow().and(other).somewhere()),
             },
+            Compiled::NormalMap(_) | Compiled::BumpMap(_) => glows().next(),
             Compiled::Checkerboard(_) | Compiled::Mix(_) | Compiled::Mask(_) => {
-                glows().reduce(Glow::and).map(somewhere)
+                glows().reduce(Glow::and).map(Glow::somewhere)
             }
         }
     }
@@ -134,22 +146,27 @@ impl MaterialTable {
 
     /// Material `id` at a point; black for a number that is no material.
     pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
-        let mut shade = Shade::black(facing_normal(view, view.surface.shading_normal));
+        let mut shade = Shade::black(facing_normal(view, view.normal));
         let (mut id, mut view) = (id, *view);
         // Every part is an earlier material, so this ends.
         while let Some(compiled) = self.materials.get(id.0 as usize) {
             id = match compiled {
                 Compiled::Phong(phong) => {
                     let lobe = phong.eval(&self.textures, || view.lookup());
-                    return Self::classic(&lobe, &view, shade);
+                    Self::classic(&lobe, &view, &mut shade);
+                    return shade;
                 }
                 Compiled::Physical(physical) => {
-                    shade.bsdf = physical.bsdf(&self.textures, &view);
-                    if physical.is_transmissive() {
-                        shade.frame = Frame::around(view.surface.shading_normal);
-                        shade.transmissive = true;
-                    }
+                    self.physical(physical, &view, &mut shade);
                     return shade;
+                }
+                Compiled::NormalMap(map) => {
+                    view.normal = map.turned(&self.textures, &view);
+                    map.material
+                }
+                Compiled::BumpMap(map) => {
+                    view.normal = map.turned(&self.textures, &view);
+                    map.material
                 }
                 Compiled::Checkerboard(board) => board.pick(view.surface),
                 Compiled::Mix(mix) => {
@@ -171,10 +188,25 @@ impl MaterialTable {
         shade
     }
 
+    /// What is nothing but a scattering function, in its frame.
+    fn physical(&self, physical: &Physical, view: &View, shade: &mut Shade) {
+        let mut normal = facing_normal(view, view.normal);
+        if physical.interior().is_some() {
+            let is_mapped = view.normal != view.surface.shading_normal;
+            let outwards = if view.is_outside() { normal } else { -normal };
+            normal = if is_mapped { outwards } else { view.normal };
+        }
+        shade.frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
+        shade.bsdf = physical.bsdf(&self.textures, view);
+        shade.transmissive = physical.is_transmissive();
+    }
+
     /// The classic material as physics would have it.
-    fn classic(lobe: &PhongLobe, view: &View, shade: Shade) -> Shade {
-        let bsdf = lobe.bsdf(view.is_outside());
-        Shade { emission: shade.emission + lobe.emission, bsdf, lamp_scale: lobe.lamp_scale(), ..shade }
+    fn classic(lobe: &PhongLobe, view: &View, shade: &mut Shade) {
+        shade.frame = Frame::around(facing_normal(view, view.normal));
+        shade.emission += lobe.emission;
+        shade.bsdf = lobe.bsdf(view.is_outside());
+        shade.lamp_scale = lobe.lamp_scale();
     }
 
     /// What a shadow ray of the classic integrator keeps when it crosses material `id` at this point: its
@@ -188,6 +220,8 @@ impl MaterialTable {
             }
             Some(Compiled::Boundary(_)) => Rgb::WHITE,
             Some(Compiled::Emissive(emissive)) => self.filter(emissive.material, surface),
+            Some(Compiled::NormalMap(map)) => self.filter(map.material, surface),
+            Some(Compiled::BumpMap(map)) => self.filter(map.material, surface),
             _ => Rgb::BLACK,
         }
     }
@@ -197,7 +231,7 @@ impl MaterialTable {
         if !self.has_holes(id) {
             return 0.0;
         }
-        1.0 - self.shade(id, &View::of(surface)).opacity
+        1.0 - self.opacity(id, &View::of(surface))
     }
 
     /// Whether [`MaterialTable::filter`] is anything but black anywhere.
@@ -208,6 +242,12 @@ impl MaterialTable {
     /// Whether [`MaterialTable::gap`] is anything but 0 anywhere.
     pub fn has_holes(&self, id: MaterialId) -> bool {
         self.facts(id).holes
+    }
+
+    /// Whether shading material `id` asks for [`View::tangents`]. Such a material is textured, too.
+    #[inline]
+    pub fn needs_tangents(&self, id: MaterialId) -> bool {
+        self.facts(id).tangents
     }
 
     /// Whether material `id` differs from place to place.

@@ -2,7 +2,7 @@
 
 use super::{Vertex, World, WorldHit};
 use crate::shape::Derivatives;
-use crate::surface::Footprint;
+use crate::surface::{Footprint, Tangents};
 use juggler_math::Ray;
 
 /// The flattest angle that footprints know, by its cosine to the normal.
@@ -24,9 +24,9 @@ impl World {
     /// How the surface at a vertex runs along its coordinates: for normal maps, anisotropy, and footprints of textures.
     /// `ray` and `hit` are those that led to the vertex, whose material must be textured. Nothing at poles and the like.
     pub fn differential(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Differential> {
-        let (found, local) = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
+        let [found, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
         let stretch = found.stretch();
-        let (uv_density, local_density) = (1.0 / stretch, local / stretch);
+        let (uv_density, local_density) = (1.0 / stretch, local.stretch() / stretch);
         let finite = stretch > 0.0 && uv_density.is_finite() && local_density.is_finite();
         finite.then_some(Differential { derivatives: found, uv_density, local_density })
     }
@@ -53,13 +53,24 @@ impl World {
         let (uv, local) = found.map_or((0.0, 0.0), |found| (world * found.uv_density, world * found.local_density));
         Footprint { world, local, uv }
     }
+
+    /// What normal maps and stretched highlights stand in at a vertex; as for [`World::differential`].
+    #[inline(never)]
+    pub(super) fn tangents(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Tangents> {
+        let [world, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
+        Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::background::{AnyBackground, Solid};
+    use crate::material::MaterialCompiler;
     use crate::shape::{AnyShape, Rectangle, Sphere};
+    use crate::texture::TextureTable;
     use crate::world::tests::world_with;
+    use crate::world::{Lamp, Object};
     use juggler_math::testing::{Random, close, close3};
     use juggler_math::{Transform, Vec3};
     use std::f32::consts::PI;
@@ -98,6 +109,24 @@ mod tests {
         let (_, found) = met(&world, Ray::new(Vec3::new(0.5, 7.0, 0.2), Vec3::NEG_Y)).unwrap();
         assert!(close3(found.derivatives.u, Vec3::X * 12.0, 1e-5) && close3(found.derivatives.v, Vec3::Z * -3.0, 1e-5));
         assert!(close(found.uv_density, 1.0 / 6.0, 1e-6) && close(found.local_density, 1.0 / 3.0, 1e-6), "{found:?}");
+    }
+
+    #[test]
+    fn materials_that_ask_for_tangents_get_them() {
+        for (recipe, asks) in [("normal_map", true), ("bump_map", true), ("diffuse", false)] {
+            let recipe = serde_json::from_str(&format!(r#"{{"{recipe}": {{}}}}"#)).unwrap();
+            let mut compiler = MaterialCompiler::new(TextureTable::default(), []);
+            let material = compiler.compile(&recipe).unwrap();
+            let objects = vec![Object::new(Sphere { radius: 2.0 }.into(), Transform::IDENTITY, material)];
+            let lamps = Vec::<Lamp>::new();
+            let world = World::new(objects, compiler.finish().unwrap(), lamps, AnyBackground::Solid(Solid::default()));
+            let mut ray = Ray::new(Vec3::X * 9.0, Vec3::NEG_X);
+            let hit = world.closest(&mut ray);
+            let tangents = world.vertex(&ray, &hit).tangents;
+            assert_eq!(tangents.is_some(), asks);
+            let along_u = Vec3::NEG_Z * 4.0 * PI;
+            assert!(tangents.is_none_or(|t| close3(t.u, along_u, 1e-4) && close3(t.local_u, along_u, 1e-4)));
+        }
     }
 
     /// By what is met a little further on, on a sphere that is turned, scaled and moved, and one that is an ellipsoid.

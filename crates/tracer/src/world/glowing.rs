@@ -87,8 +87,7 @@ impl Glowing {
         let ray = transform.ray_to_local(&Ray { time: to.time, ..Ray::new(to.point, wi) });
         let surface = self.shape.surface(&ray, &self.shape.intersect(&ray)?).to_world(transform);
         let view = View { wo: -wi, ..View::of(&surface) };
-        let shade = materials.shade(self.material, &view);
-        Some(shade.emission * shade.opacity).filter(|light| !light.is_black())
+        Some(materials.radiance(self.material, &view)).filter(|light| !light.is_black())
     }
 
     /// Density per steradian with which [`Glowing::sample`] picks the place where `ray` met this shape.

@@ -181,7 +181,7 @@ impl Level {
             Content::Shape(shape) => {
                 let material = material.unwrap_or(MaterialId::NONE);
                 let surface = placed.surface(shape, ray, &hit.hit, !materials.is_textured(material));
-                Vertex { surface, material, object: hit.object, part: hit.hit.part }
+                Vertex { surface, material, object: hit.object, part: hit.hit.part, tangents: None }
             }
             Content::Level(level) => {
                 level.instanced(&placed.motion.at(ray.time), ray, hit, number, material, materials)
@@ -204,18 +204,15 @@ impl Level {
         Vertex { surface: vertex.surface.to_world(transform), ..vertex }
     }
 
-    /// How the surface at a hit runs along its coordinates, in this level's space, and the stretch of those in object space.
-    /// `local` is that of the vertex there.
-    pub(super) fn derivatives(&self, local: Vec3, hit: &Hit, number: u32, time: f32) -> Option<(Derivatives, f32)> {
+    /// How the surface at a hit runs along its coordinates, in this level's space and in object space. `local` is that of
+    /// the vertex there.
+    pub(super) fn derivatives(&self, local: Vec3, hit: &Hit, number: u32, time: f32) -> Option<[Derivatives; 2]> {
         let (placed, number) = self.find(number);
-        let (found, stretch) = match &placed.content {
-            Content::Shape(shape) => {
-                let found = shape.derivatives(local, hit, time)?;
-                (found, found.stretch())
-            }
+        let [found, own] = match &placed.content {
+            Content::Shape(shape) => [shape.derivatives(local, hit, time)?; 2],
             Content::Level(level) => level.derivatives(local, hit, number, time)?,
         };
-        Some((found.through(&placed.motion.at(time)), stretch))
+        Some([found.through(&placed.motion.at(time)), own])
     }
 
     /// A box around the shape `number`, in this level's space; empty when it has no end.

@@ -5,7 +5,7 @@ use crate::bsdf::Phong;
 use crate::material::{MaterialId, MaterialTable, Shade, View};
 use crate::medium::{Interior, InteriorId};
 use crate::shape::Hit;
-use crate::surface::Surface;
+use crate::surface::{Surface, Tangents};
 use emitters::Emitters;
 use glowing::Glowing;
 use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
@@ -85,6 +85,8 @@ pub struct Vertex {
     pub object: u32,
     /// Triangle or face of the shape.
     pub part: u32,
+    /// How the surface runs along its coordinates, where the material asks for it and the surface has an answer.
+    pub tangents: Option<Tangents>,
 }
 
 /// Everything that can be seen.
@@ -184,7 +186,9 @@ impl World {
     /// chance.
     #[inline]
     pub fn shade(&self, vertex: &Vertex, wo: Vec3, around_ior: f32, pick: f32) -> Shade {
-        self.materials.shade(vertex.material, &View { surface: &vertex.surface, wo, around_ior, pick })
+        let tangents = vertex.tangents.as_ref();
+        let view = View { wo, around_ior, pick, tangents, ..View::of(&vertex.surface) };
+        self.materials.shade(vertex.material, &view)
     }
 
     /// What is behind the surface of a vertex, if light comes there.
@@ -202,7 +206,11 @@ impl World {
     /// The surface where `ray` made `hit`.
     #[inline(always)]
     pub fn vertex(&self, ray: &Ray, hit: &WorldHit) -> Vertex {
-        self.top.vertex(ray, hit, hit.object, None, &self.materials)
+        let mut vertex = self.top.vertex(ray, hit, hit.object, None, &self.materials);
+        if self.materials.needs_tangents(vertex.material) {
+            vertex.tangents = self.tangents(ray, hit, &vertex);
+        }
+        vertex
     }
 
     /// Counts for reports.

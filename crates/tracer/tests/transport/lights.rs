@@ -21,7 +21,7 @@ fn a_sphere() {
     for (center, radius) in [(Vec3::new(0.0, 3.0, 0.0), 1.0), (Vec3::new(-2.0, 2.5, -1.0), 0.8)] {
         let scene = Scene::floor().with(&format!(r#"{{"sphere": {{"radius": {radius}}}}}"#), center, LAMP);
         let distance = f64::from(center.length());
-        let sine = f64::from(radius) / distance;
+        let sine = radius / distance;
         traced(scene, &at_origin(), 64).is(SHOWN * 3.0 * PI * sine * sine * f64::from(center.y) / distance);
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::probe::{Scene, at_origin, read, traced};
 use juggler_math::{Image, Ray, Rgb, Vec3};
-use juggler_tracer::background::{AnyBackground, Environment};
+use juggler_tracer::background::{AnyBackground, Environment, Panorama};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn prepared(mut background: AnyBackground) -> AnyBackground {
     background.prepare().unwrap();
@@ -68,7 +69,7 @@ pub fn panorama() -> AnyBackground {
         image.pixels_mut()[y * 64 + x] = Rgb::new(300.0, 200.0, 100.0);
     }
     let mut environment = Environment::from_file("spot.exr");
-    environment.load(image).unwrap();
+    environment.set_panorama(Arc::new(Panorama::new(image).unwrap()));
     prepared(environment.into())
 }
 
