@@ -20,6 +20,19 @@ pub struct Surface {
     pub local: Vec3,
     /// What `shading_normal` is in object space, for such textures.
     pub local_normal: Vec3,
+    /// What the ray that is looked along covers, for textures; a point unless somebody says otherwise.
+    pub footprint: Footprint,
+}
+
+/// Diameters of the patch of a surface that a ray stands for; 0 for a point alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Footprint {
+    /// In world units.
+    pub world: f32,
+    /// In units of object space.
+    pub local: f32,
+    /// In units of the surface coordinates.
+    pub uv: f32,
 }
 
 /// How a surface runs along its coordinates at a point, normals aside: what normal maps and stretched highlights stand in.
@@ -38,7 +51,8 @@ pub struct Tangents {
 impl Surface {
     /// A point with one normal.
     pub fn new(point: Vec3, error: f32, normal: Vec3, uv: Vec2) -> Self {
-        Self { point, error, normal, shading_normal: normal, uv, local: point, local_normal: normal }
+        let footprint = Footprint::default();
+        Self { point, error, normal, shading_normal: normal, uv, local: point, local_normal: normal, footprint }
     }
 
     /// The same point in world space.
@@ -57,6 +71,7 @@ impl Surface {
             uv: self.uv,
             local: self.local,
             local_normal: self.local_normal,
+            footprint: self.footprint,
         }
     }
 

@@ -37,7 +37,7 @@ pub struct Environment {
     #[serde(default = "up")]
     #[schemars(with = "[f32; 3]")]
     pub up: Vec3,
-    /// The picture that [`Environment::set_panorama`] was given: clones share it.
+    /// The picture that [`Environment::load`] or [`Environment::set_panorama`] was given: clones share it.
     #[serde(skip)]
     panorama: Option<Arc<Panorama>>,
     /// What [`Background::prepare`] makes of the numbers.
@@ -71,13 +71,21 @@ impl fmt::Debug for Panorama {
 }
 
 impl Environment {
-    /// One whose picture is to be given to [`Environment::set_panorama`].
+    /// One whose picture is to be given to [`Environment::load`] or [`Environment::set_panorama`].
     pub fn from_file(file: impl Into<String>) -> Self {
         let (panorama, orientation) = (None, Orientation::default());
         Self { file: file.into(), scale: 1.0, rotation_degrees: 0.0, up: Vec3::Y, panorama, orientation }
     }
 
-    /// Takes what the file holds, to be [prepared](Background::prepare) then.
+    /// Takes the picture that the file holds, to be [prepared](Background::prepare) then; an error when that cannot be.
+    pub fn load(&mut self, image: Image) -> Result<(), InvalidBackground> {
+        let wrong =
+            |what: &str| InvalidBackground { field: "file", message: format!("`file` \"{}\" {what}", self.file) };
+        self.panorama = Some(Arc::new(Panorama::new(image).map_err(wrong)?));
+        Ok(())
+    }
+
+    /// The same with a picture that others may show, too, to be [prepared](Background::prepare) then.
     pub fn set_panorama(&mut self, panorama: Arc<Panorama>) {
         self.panorama = Some(panorama);
     }
@@ -210,8 +218,7 @@ impl Environment {
     pub fn painted(width: u32, height: u32, paint: impl Fn(u32, u32) -> Rgb) -> Self {
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| paint(x, y)).collect();
         let mut environment = Self::from_file("painted");
-        let image = Image::from_pixels(width, height, pixels).unwrap();
-        environment.set_panorama(Arc::new(Panorama::new(image).unwrap()));
+        environment.load(Image::from_pixels(width, height, pixels).unwrap()).unwrap();
         environment.prepare().unwrap();
         environment
     }
@@ -275,7 +282,7 @@ mod tests {
         assert_eq!(environment.prepare().unwrap_err().field, "file");
         assert!(environment.sample(Vec2::ZERO).is_none());
         let panorama = |v: f32| Panorama::new(Image::filled(2, 1, Rgb::splat(v)));
-        assert_eq!(Panorama::new(Image::filled(0, 0, Rgb::BLACK)).err(), Some("has no pixels"));
+        assert_eq!(environment.load(Image::filled(0, 0, Rgb::BLACK)).unwrap_err().field, "file");
         assert_eq!(panorama(f32::INFINITY).err(), Some("has pixels without end"));
         for nothing in [-3.0, f32::NAN] {
             environment.set_panorama(Arc::new(panorama(nothing).unwrap()));

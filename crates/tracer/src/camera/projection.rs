@@ -101,6 +101,13 @@ impl Projection {
         self.origin
     }
 
+    /// Diameter of a pixel where rays begin, and how much it grows on each unit of the way: in the middle of a film that is
+    /// looked at straight.
+    pub fn pixel(&self) -> [f32; 2] {
+        let size = (self.right.length() * self.down.length()).sqrt();
+        if matches!(self.lens, Lens::Parallel { .. }) { [size, 0.0] } else { [0.0, size] }
+    }
+
     /// Whether the place on the lens makes a difference.
     #[inline]
     pub fn needs_lens(&self) -> bool {

@@ -24,6 +24,10 @@ impl Integrator for Direct {
         Path::DIRECT.escape(world, ray, path, emit);
     }
 
+    fn fades_patterns(&self) -> bool {
+        true
+    }
+
     fn shadows(&self) -> Shadows {
         Shadows::Physical
     }

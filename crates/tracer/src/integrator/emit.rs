@@ -1,6 +1,6 @@
 //! What an integrator may do at a vertex.
 
-use super::Trail;
+use super::{Cone, Trail};
 use crate::medium::Interiors;
 use crate::sampler::Sampler;
 use juggler_math::{Ray, Rgb};
@@ -16,6 +16,8 @@ pub struct PathState {
     pub sampler: Sampler,
     /// What a path of light remembers of its last vertex.
     pub trail: Trail,
+    /// How wide it is.
+    pub cone: Cone,
     /// Sample of the engine's pass.
     pub(crate) slot: u32,
 }
@@ -93,11 +95,20 @@ pub struct Emit<'a> {
     path: &'a PathState,
     /// What radiance from here is worth to the sample.
     weight: Rgb,
+    /// How wide the ray is here.
+    cone: Cone,
 }
 
 impl<'a> Emit<'a> {
-    pub(crate) fn new(harvest: &'a mut Harvest, path: &'a PathState) -> Self {
-        Self { harvest, path, weight: path.weight }
+    /// Of a path that has come `distance` far since its last vertex; infinitely when it leaves the world.
+    pub(crate) fn new(harvest: &'a mut Harvest, path: &'a PathState, distance: f32) -> Self {
+        let cone = if distance < f32::INFINITY { path.cone.after(distance) } else { path.cone };
+        Self { harvest, path, weight: path.weight, cone }
+    }
+
+    /// How wide the ray is here.
+    pub(crate) fn width(&self) -> f32 {
+        self.cone.width
     }
 
     /// What radiance from here is worth to the sample.
@@ -156,6 +167,7 @@ impl<'a> Emit<'a> {
             weight: self.weight * weight,
             depth: self.path.depth + 1,
             sampler: self.path.sampler.branch(child),
+            cone: self.cone,
             ..*self.path
         };
         self.harvest.next.push(ray, path);
@@ -169,6 +181,7 @@ impl<'a> Emit<'a> {
             depth: self.path.depth + steps,
             sampler: self.path.sampler.branch(0),
             trail,
+            cone: self.cone.scattered(trail.pdf),
             ..*self.path
         };
         self.harvest.next.push(ray, path);

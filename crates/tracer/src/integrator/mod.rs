@@ -10,6 +10,7 @@ use juggler_math::Ray;
 mod albedo;
 mod ambient_occlusion;
 mod classic;
+mod cone;
 mod depth;
 mod direct;
 mod emit;
@@ -17,6 +18,7 @@ mod normals;
 mod path;
 mod trail;
 
+pub use cone::Cone;
 pub use emit::{Emit, PathState};
 pub(crate) use emit::{Harvest, Queue};
 pub use trail::{Counts, Trail};
@@ -27,6 +29,11 @@ pub trait Integrator: Send + Sync {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit);
     /// `ray` left the world: what it adds.
     fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, _emit: &mut Emit) {}
+    /// Whether patterns fade where rays are wider than they are fine. Classic pictures never had that: in them only
+    /// pictures on surfaces do.
+    fn fades_patterns(&self) -> bool {
+        false
+    }
     /// What its shadow rays keep.
     fn shadows(&self) -> Shadows {
         Shadows::Filtered

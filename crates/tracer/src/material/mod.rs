@@ -141,6 +141,9 @@ fn lookup(surface: &Surface) -> Lookup {
         world: surface.point,
         normal: surface.shading_normal,
         local_normal: surface.local_normal,
-        ..Lookup::default()
+        footprint: surface.footprint.world,
+        local_footprint: surface.footprint.local,
+        uv_footprint: surface.footprint.uv,
+        sharp: false,
     }
 }

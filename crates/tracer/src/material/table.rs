@@ -5,7 +5,7 @@ use super::{Compiled, Glow, MaterialId, Physical, Shade, View, lookup, tangent};
 use crate::bsdf::Phong as PhongLobe;
 use crate::medium::{Interior, InteriorId};
 use crate::surface::Surface;
-use crate::texture::TextureTable;
+use crate::texture::{Lookup, TextureTable};
 use juggler_math::{Frame, Rgb};
 use std::borrow::Cow;
 
@@ -130,12 +130,15 @@ impl MaterialTable {
         self.facts(id).glow
     }
 
-    /// The numbers of the classic material `id` at a point of a surface (world space, normals as the shape gives them);
+    /// The numbers of the classic material `id` at a point of a surface (world space, normals as the shape gives them), its
+    /// patterns as sharp as they are;
     /// `None` for a material of another kind, black for a number that is no material.
     #[inline]
     pub fn phong(&self, id: MaterialId, surface: &Surface) -> Option<Cow<'_, PhongLobe>> {
         match self.leaf(id, surface) {
-            Some(Compiled::Phong(phong)) => Some(phong.eval(&self.textures, || lookup(surface))),
+            Some(Compiled::Phong(phong)) => {
+                Some(phong.eval(&self.textures, || Lookup { sharp: true, ..lookup(surface) }))
+            }
             Some(_) => None,
             None => Some(Cow::Borrowed(&PhongLobe::BLACK)),
         }

@@ -54,7 +54,7 @@ const LEAST_COLOR: f32 = 1e-6;
 impl Medium {
     /// The field at fault and what it should be.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
-        let coefficient = |v: f32| v >= 0.0 && v <= 1e12;
+        let coefficient = |v: f32| (0.0..=1e12).contains(&v);
         let refuse = |field, message: &str| Err((field, format!("`{field}` must be {message}")));
         if !self.absorption.to_array().into_iter().all(coefficient) {
             return refuse("absorption", "0 or more in every channel");
@@ -62,7 +62,7 @@ impl Medium {
         if !self.scattering.to_array().into_iter().all(coefficient) {
             return refuse("scattering", "0 or more in every channel");
         }
-        if !(self.anisotropy.abs() <= 0.999) {
+        if !(-0.999..=0.999).contains(&self.anisotropy) {
             return refuse("anisotropy", "between -0.999 and 0.999");
         }
         if !self.color.to_array().into_iter().all(|v| (0.0..=1.0).contains(&v)) {

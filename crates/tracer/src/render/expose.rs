@@ -2,7 +2,7 @@
 
 use super::{Job, Work};
 use crate::camera::LANES;
-use crate::integrator::{PathState, Queue, Trail};
+use crate::integrator::{Cone, PathState, Queue, Trail};
 use crate::sampler::Sampler;
 use juggler_math::{Rgb, UVec2, Vec2};
 use std::ops::Range;
@@ -15,15 +15,29 @@ const LENS: u32 = 1;
 /// The dimension of a sample's time, beyond all that paths come to: still pictures do without it.
 const TIME: u32 = 1 << 31;
 
+/// How wide camera rays are, in pixels. Samples of a pixel lie apart from each other, and what they mix need not be smoothed
+/// twice.
+const PIXELS: f32 = 0.5;
+
+/// How paths begin.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    trail: Trail,
+    cone: Cone,
+}
+
 /// What paths remember when they leave a camera: the solids that it is in, half way between opening and closing of the
-/// shutter.
-pub fn start(job: &Job) -> Trail {
+/// shutter, and how wide they are.
+pub fn start(job: &Job) -> Start {
     const MIDDLE: f32 = 0.5;
-    Trail { inside: job.world.inside(job.camera.at(MIDDLE).eye(), MIDDLE), ..Trail::CAMERA }
+    let camera = job.camera.at(MIDDLE);
+    let [width, spread] = camera.pixel().map(|size| size * PIXELS);
+    let trail = Trail { inside: job.world.inside(camera.eye(), MIDDLE), ..Trail::CAMERA };
+    Start { trail, cone: Cone { width, spread } }
 }
 
 /// The rays of the samples `slots` of all samples of `work`, `samples` a pixel, pixel by pixel; they begin with `start`.
-pub fn expose(job: &Job, start: &Trail, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
+pub fn expose(job: &Job, start: &Start, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
     let picture = Picture { job, start, sampler: Sampler::new(job.pattern, job.seed) };
     if job.samples == 1 {
         return expose_centers(&picture, work, slots, queue);
@@ -67,14 +81,14 @@ fn expose_centers(picture: &Picture, work: &Work, range: Range<u64>, queue: &mut
 /// What all pixels have in common.
 struct Picture<'j> {
     job: &'j Job<'j>,
-    start: &'j Trail,
+    start: &'j Start,
     sampler: Sampler,
 }
 
 /// One pixel of the film.
 struct Pixel<'j> {
     job: &'j Job<'j>,
-    start: &'j Trail,
+    start: &'j Start,
     center: Vec2,
     stream: Sampler,
     /// Whether time makes a difference.
@@ -118,7 +132,8 @@ impl<'j> Pixel<'j> {
             weight: Rgb::splat(weight),
             depth: 0,
             sampler: self.sampler(sample, FILM + LENS),
-            trail: *self.start,
+            trail: self.start.trail,
+            cone: self.start.cone,
             slot,
         }
     }

@@ -18,7 +18,7 @@ mod schedule;
 mod wavefront;
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
 
 pub use control::{Control, Rays};
 pub use progressive::{Exposure, Hand, expose, is_finished, most_runs};

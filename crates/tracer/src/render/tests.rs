@@ -10,12 +10,13 @@ use crate::light::AnyLight;
 use crate::material::{AnyMaterial, MaterialCompiler};
 use crate::sampler::{Pattern, Sobol, Spread};
 use crate::shape::AnyShape;
-use crate::texture::TextureTable;
+use crate::texture::{Image, Images, Pyramid, TextureTable};
 use crate::world::{Object, Vertex};
 use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
 mod blur;
+mod cones;
 mod inside;
 
 pub fn read<T: DeserializeOwned>(json: &str) -> T {

@@ -6,10 +6,10 @@
 //! that size wherever it stands. So the order in which a sample's contributions are added follows from its
 //! own tree of rays alone. The same cuts bound the memory.
 
-use super::expose::{expose, start};
+use super::expose::{Start, expose, start};
 use super::{Control, Job, Rays, Stopped, Work};
 use crate::film::{Accumulator, Rect, Run, Tile, runs};
-use crate::integrator::{Emit, Harvest, Queue, Trail};
+use crate::integrator::{Emit, Harvest, Queue};
 use crate::world::{Shadows, WorldHit};
 use juggler_math::Rgb;
 use std::ops::Range;
@@ -27,7 +27,9 @@ const WAITING: usize = 16_384;
 pub struct Engine<'j> {
     job: &'j Job<'j>,
     /// How paths begin.
-    start: Trail,
+    start: Start,
+    /// Whether vertices are told how wide rays are.
+    measures: bool,
     hits: Vec<WorldHit>,
     through: Vec<Rgb>,
     harvest: Harvest,
@@ -41,6 +43,7 @@ impl<'j> Engine<'j> {
         Self {
             job,
             start: start(job),
+            measures: job.world.has_pictures() || job.integrator.fades_patterns(),
             hits: Vec::new(),
             through: Vec::new(),
             harvest: Harvest::default(),
@@ -126,9 +129,12 @@ impl<'j> Engine<'j> {
     fn shade(&mut self, queue: &Queue) -> usize {
         let Job { world, integrator, .. } = self.job;
         for (i, ((ray, path), hit)) in queue.rays.iter().zip(&queue.paths).zip(&self.hits).enumerate() {
-            let mut emit = Emit::new(&mut self.harvest, path);
+            let mut emit = Emit::new(&mut self.harvest, path, ray.t_max);
             if hit.is_some() {
-                let vertex = world.vertex(ray, hit);
+                let mut vertex = world.vertex(ray, hit);
+                if self.measures {
+                    world.measure(ray, hit, emit.width(), &mut vertex);
+                }
                 integrator.vertex(world, ray, path, &vertex, &mut emit);
             } else {
                 integrator.escape(world, ray, path, &mut emit);

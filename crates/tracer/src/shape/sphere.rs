@@ -16,7 +16,7 @@ use super::arithmetic::{double, in_range, root_fractions, roots, turn};
 use super::derivatives::{Derivatives, about_y};
 use super::solid_angle::{area_pdf, area_sample};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
-use crate::surface::Surface;
+use crate::surface::{Footprint, Surface};
 use juggler_math::{Aabb, DVec3, Frame, Ray, Vec2, Vec3, fun, robust, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -100,6 +100,7 @@ pub fn sphere_surface(center: Vec3, radius: f32, ray: &Ray, hit: &Hit) -> Surfac
         uv: Vec2::ZERO,
         local: normal * radius,
         local_normal: normal,
+        footprint: Footprint::default(),
     }
 }
 

@@ -65,6 +65,7 @@ fn colours_are_finite_everywhere() {
                     footprint,
                     local_footprint: footprint,
                     uv_footprint: footprint,
+                    sharp: false,
                 };
                 assert!(color(&texture, &at).is_finite(), "{texture:?} {at:?}");
             }

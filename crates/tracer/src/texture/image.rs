@@ -136,7 +136,7 @@ pub struct CompiledImage {
 impl CompiledImage {
     /// The colour at a point.
     pub fn eval(&self, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
+        let place = self.map.wide_place(at);
         // Rows count from the top.
         let [r, g, b, a] =
             self.pixels.sample([place.point.x, 1.0 - place.point.y], place.width, self.wrap, self.filter);

@@ -110,6 +110,11 @@ impl Place {
 impl Map {
     /// Where a lookup meets the pattern.
     pub fn place(&self, at: &Lookup) -> Place {
+        if at.sharp { Place { point: self.point(at.point(self.space)), width: 0.0 } } else { self.wide_place(at) }
+    }
+
+    /// The same for what is never sharp.
+    pub fn wide_place(&self, at: &Lookup) -> Place {
         let point = self.point(at.point(self.space));
         // Not-a-number is no width either.
         let width = (at.footprint_in(self.space) * self.growth).max(0.0);

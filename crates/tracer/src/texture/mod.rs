@@ -73,6 +73,8 @@ pub struct Lookup {
     pub local_footprint: f32,
     /// Footprint in units of the surface coordinates.
     pub uv_footprint: f32,
+    /// Whether patterns that are computed show the point alone, as in classic pictures; those from files never do.
+    pub sharp: bool,
 }
 
 /// The coordinates that a texture lives in.

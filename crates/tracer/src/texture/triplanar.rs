@@ -62,7 +62,7 @@ pub struct CompiledTriplanar {
 impl CompiledTriplanar {
     /// The colour at a point.
     pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
+        let place = self.map.wide_place(at);
         let normal = self.map.direction(if self.map.space == Space::World { at.normal } else { at.local_normal });
         let (weights, p) = (self.weights(normal), place.point);
         let facing = |n: f32| if n < 0.0 { -1.0 } else { 1.0 };

@@ -2,8 +2,11 @@
 
 use super::{Vertex, World, WorldHit};
 use crate::shape::Derivatives;
-use crate::surface::Tangents;
+use crate::surface::{Footprint, Tangents};
 use juggler_math::Ray;
+
+/// The flattest angle that footprints know, by its cosine to the normal.
+const LEAST_COS: f32 = 0.01;
 
 /// How a surface runs along its coordinates, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +37,29 @@ impl World {
         let [world, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
         Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v })
     }
+
+    /// Whether anything shows pictures from files.
+    pub fn has_pictures(&self) -> bool {
+        self.has_pictures
+    }
+
+    /// Tells a vertex, if its material asks textures, what `ray` covers that is `width` wide there: a circle with the area
+    /// of the ellipse that its cone cuts out of the surface.
+    #[inline]
+    pub fn measure(&self, ray: &Ray, hit: &WorldHit, width: f32, vertex: &mut Vertex) {
+        if self.materials.is_textured(vertex.material) {
+            vertex.surface.footprint = self.footprint(ray, hit, width, vertex);
+        }
+    }
+
+    #[inline(never)]
+    fn footprint(&self, ray: &Ray, hit: &WorldHit, width: f32, vertex: &Vertex) -> Footprint {
+        let cos = vertex.surface.normal.dot(ray.direction).abs().max(LEAST_COS);
+        let world = width / cos.sqrt();
+        let found = self.differential(ray, hit, vertex);
+        let (uv, local) = found.map_or((0.0, 0.0), |found| (world * found.uv_density, world * found.local_density));
+        Footprint { world, local, uv }
+    }
 }
 
 #[cfg(test)]
@@ -54,6 +80,26 @@ mod tests {
         let hit = world.closest(&mut found);
         let vertex = hit.is_some().then(|| world.vertex(&ray, &hit))?;
         Some((vertex, world.differential(&ray, &hit, &vertex)?))
+    }
+
+    #[test]
+    fn footprints_cover_the_area_that_a_cone_cuts_out() {
+        let shape = AnyShape::from(Rectangle { size: [4.0, 1.0] });
+        let world = world_with(shape.clone(), Transform::scale(Vec3::splat(3.0)).unwrap(), true);
+        let direction = Vec3::new(0.6, -0.8, 0.0);
+        let mut ray = Ray::new(direction * -5.0, direction);
+        let hit = world.closest(&mut ray);
+        let mut vertex = world.vertex(&ray, &hit);
+        assert_eq!(vertex.surface.footprint, Footprint::default());
+        world.measure(&ray, &hit, 0.1, &mut vertex);
+        let Footprint { world: wide, local, uv } = vertex.surface.footprint;
+        assert!(
+            close(wide, 0.1 / 0.8f32.sqrt(), 1e-6) && close(local, wide / 3.0, 1e-6) && close(uv, wide / 6.0, 1e-6)
+        );
+        let plain = world_with(shape, Transform::IDENTITY, false);
+        let mut vertex = plain.vertex(&ray, &hit);
+        plain.measure(&ray, &hit, 0.1, &mut vertex);
+        assert_eq!(vertex.surface.footprint, Footprint::default());
     }
 
     #[test]

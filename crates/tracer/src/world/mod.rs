@@ -101,6 +101,7 @@ pub struct World {
     has_transparency: bool,
     has_holes: bool,
     has_media: bool,
+    has_pictures: bool,
     moves: bool,
 }
 
@@ -121,9 +122,22 @@ impl World {
         let mut lamps: Vec<Lamp> = lights.into_iter().map(Into::into).collect();
         let ambient = lamps.iter().fold(Rgb::BLACK, |sum, lamp| sum + lamp.ambient);
         lamps.retain(|lamp| lamp.ambient.is_black());
+        let has_pictures = materials.textures().image_bytes() > 0;
         let moves = top.moves() || lamps.iter().any(Lamp::moves);
         let emitters = Emitters::new(&lamps, Glowing::all(&top, &materials), &background, radius(&top.bounds()));
-        Self { top, materials, lamps, ambient, background, emitters, has_transparency, has_holes, has_media, moves }
+        Self {
+            top,
+            materials,
+            lamps,
+            ambient,
+            background,
+            emitters,
+            has_transparency,
+            has_holes,
+            has_media,
+            has_pictures,
+            moves,
+        }
     }
 
     /// The same world for another vector unit than the best of this machine: for tests and measurements.

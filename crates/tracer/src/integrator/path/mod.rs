@@ -125,6 +125,10 @@ impl Integrator for Path {
         }
     }
 
+    fn fades_patterns(&self) -> bool {
+        true
+    }
+
     fn shadows(&self) -> Shadows {
         Shadows::Physical
     }
