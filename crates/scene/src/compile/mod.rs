@@ -6,6 +6,7 @@ use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
+use juggler_tracer::integrator::AnyIntegrator;
 use juggler_tracer::material::MaterialTable;
 use juggler_tracer::world::{Lamp, Object, World};
 use std::sync::Arc;
@@ -95,7 +96,8 @@ impl Assembly {
                 Vec::new()
             }
         };
-        let lit = !scene.lights.is_empty() || materials.glows();
+        let lit =
+            !scene.lights.is_empty() || materials.glows() || background.as_ref().is_some_and(|b| lights(scene, b));
         let bounds = bounds(&objects);
         let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
         let lights = if lit {
@@ -131,6 +133,13 @@ pub fn look_at(
     settings::check(&scene.render, &mut findings);
     let (cameras, course) = cameras(scene, moments, &or_some(world.bounds()), &mut findings);
     (cameras, course, findings)
+}
+
+/// Whether a background lights the scene: panoramas and skies are made for it, and paths find every one.
+fn lights(scene: &Description, background: &AnyBackground) -> bool {
+    let follows_paths = matches!(scene.render.integrator, AnyIntegrator::Path(_) | AnyIntegrator::Direct(_));
+    let is_light = matches!(background, AnyBackground::Environment(_) | AnyBackground::Sky(_));
+    is_light || follows_paths && !background.mean().is_black()
 }
 
 /// A box around all objects that have an end.

@@ -31,6 +31,13 @@ impl World {
         finite.then_some(Differential { derivatives: found, uv_density, local_density })
     }
 
+    /// What normal maps and stretched highlights stand in at a vertex; as for [`World::differential`].
+    #[inline(never)]
+    pub(super) fn tangents(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Tangents> {
+        let [world, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
+        Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v })
+    }
+
     /// Whether anything shows pictures from files.
     pub fn has_pictures(&self) -> bool {
         self.has_pictures
@@ -52,13 +59,6 @@ impl World {
         let found = self.differential(ray, hit, vertex);
         let (uv, local) = found.map_or((0.0, 0.0), |found| (world * found.uv_density, world * found.local_density));
         Footprint { world, local, uv }
-    }
-
-    /// What normal maps and stretched highlights stand in at a vertex; as for [`World::differential`].
-    #[inline(never)]
-    pub(super) fn tangents(&self, ray: &Ray, hit: &WorldHit, vertex: &Vertex) -> Option<Tangents> {
-        let [world, local] = self.top.derivatives(vertex.surface.local, &hit.hit, hit.object, ray.time)?;
-        Some(Tangents { u: world.u, v: world.v, local_u: local.u, local_v: local.v })
     }
 }
 
