@@ -112,9 +112,11 @@ impl Node {
     /// the angle to the cone of normals and θ'ᵢ that to the normal of the place, both less the half angle
     /// under which the child's ball is seen.
     #[inline]
+    #[expect(clippy::needless_range_loop, reason = "a plain loop is made a vector loop")]
     pub fn weights(&self, place: &Place) -> Weights {
         let (p, n) = (place.point, place.normal);
-        Weights::new(std::array::from_fn(|i| {
+        let mut weights = [0.0; WIDTH];
+        for i in 0..WIDTH {
             let to = [self.center[0][i] - p.x, self.center[1][i] - p.y, self.center[2][i] - p.z];
             let squared = to[0] * to[0] + to[1] * to[1] + to[2] * to[2];
             let ball = self.radius[i] * self.radius[i];
@@ -139,8 +141,9 @@ impl Node {
 
             let lights = (cos_leaving > self.cos_emission[i]) & (cos_arriving > -PLANE_SLACK);
             let cosines = above(cos_leaving, LEAST_EMISSION) * above(cos_arriving, place.least_arrival);
-            select(lights, self.power[i] * cosines * (inverse * inverse), 0.0)
-        }))
+            weights[i] = select(lights, self.power[i] * cosines * (inverse * inverse), 0.0);
+        }
+        Weights::new(weights)
     }
 }
 
