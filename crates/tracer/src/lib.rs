@@ -7,7 +7,8 @@
 //! 5. seen as a [`surface`],
 //! 6. whose [`material`] reads its [`texture`]s
 //! 7. and becomes the numbers of a [`bsdf`] at this one point;
-//! 8. [`light`]s say what arrives there, the [`background`] what a ray that leaves the world sees;
+//! 8. [`light`]s say what arrives there, on some ways by polished balls ([`manifold`]), the [`background`] what a ray that
+//!    leaves the world sees;
 //! 9. an [`integrator`] says what the point adds, and which rays go on;
 //! 10. the [`film`] sums, and [`render`] drives it all on every core.
 //!
@@ -23,6 +24,7 @@ pub mod emitter;
 pub mod film;
 pub mod integrator;
 pub mod light;
+pub mod manifold;
 pub mod material;
 pub mod medium;
 pub mod render;

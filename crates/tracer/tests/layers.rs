@@ -13,14 +13,15 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("bsdf", &[]),
     ("emitter", &[]),
     ("medium", &[]),
+    ("manifold", &[]),
     ("surface", &[]),
     ("background", &[]),
     ("shape", &["surface"]),
     ("texture", &["surface"]),
     ("light", &["emitter", "shape", "texture"]),
     ("material", &["surface", "texture", "bsdf", "medium"]),
-    ("world", &["shape", "surface", "medium", "material", "bsdf", "emitter", "light", "background"]),
-    ("integrator", &["world", "surface", "material", "medium", "bsdf", "light", "sampler"]),
+    ("world", &["shape", "surface", "medium", "manifold", "material", "bsdf", "emitter", "light", "background"]),
+    ("integrator", &["world", "surface", "manifold", "material", "medium", "bsdf", "light", "sampler"]),
     ("render", &["camera", "sampler", "integrator", "world", "film"]),
 ];
 

@@ -72,6 +72,13 @@ impl Bsdf {
         Self { lobes: ArrayVec::new_const() }
     }
 
+    /// Becomes another one. Only the lobes that are there are copied.
+    #[inline]
+    pub fn set(&mut self, other: &Self) {
+        self.lobes.clear();
+        self.lobes.extend(other.lobes.iter().copied());
+    }
+
     /// Adds a lobe. Who adds several side by side sees to it that they give no more light than there was. More than
     /// [`MAX_LOBES`] are left out.
     #[inline]
@@ -257,6 +264,13 @@ impl Bsdf {
     #[inline]
     pub fn is_specular(&self) -> bool {
         self.lobes.iter().all(|one| one.lobe.is_specular())
+    }
+
+    /// How most of what is no delta is scattered.
+    pub fn scatter(&self) -> Scatter {
+        let spread = self.lobes.iter().filter(|one| !one.lobe.is_specular());
+        let most = spread.max_by(|a, b| a.weight.total_cmp(&b.weight));
+        most.map_or(Scatter::Specular, |one| one.lobe.scatter())
     }
 
     /// Whether there is any delta.

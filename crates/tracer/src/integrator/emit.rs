@@ -3,6 +3,7 @@
 use super::{Cone, Trail};
 use crate::medium::Interiors;
 use crate::sampler::Sampler;
+use arrayvec::ArrayVec;
 use juggler_math::{Ray, Rgb};
 
 /// What a ray in flight carries along.
@@ -64,6 +65,16 @@ pub(crate) struct Gain {
     pub inside: Interiors,
 }
 
+/// A light that is seen, if all stretches of a way to it are free.
+#[derive(Clone, Debug)]
+pub(crate) struct Bent {
+    pub legs: ArrayVec<Ray, 3>,
+    /// To which sample.
+    pub slot: u32,
+    /// How much.
+    pub radiance: Rgb,
+}
+
 /// Everything that a segment of the queue brings forth; kept and emptied by the engine.
 #[derive(Debug, Default)]
 pub(crate) struct Harvest {
@@ -71,6 +82,8 @@ pub(crate) struct Harvest {
     pub radiance: Vec<Rgb>,
     /// One queue a light, whose rays run much the same way, and at the end one for rays that do not.
     pub shadows: Vec<ShadowQueue>,
+    /// Ways around a corner to lights.
+    pub bent: Vec<Bent>,
     /// Shadow rays that wait, in all queues.
     pub pending: usize,
     /// Rays that go on.
@@ -147,6 +160,15 @@ impl<'a> Emit<'a> {
     #[inline]
     pub fn if_visible_inside(&mut self, ray: Ray, radiance: Rgb, inside: Interiors) {
         self.push_shadow(self.harvest.shadows.len() - 1, ray, radiance, inside);
+    }
+
+    /// Adds, times the path's weight, `radiance` if all of the rays come through.
+    pub fn if_all_free(&mut self, legs: ArrayVec<Ray, 3>, radiance: Rgb) {
+        let radiance = radiance * self.weight;
+        if !radiance.is_black() {
+            self.harvest.pending += legs.len();
+            self.harvest.bent.push(Bent { legs, slot: self.path.slot, radiance });
+        }
     }
 
     fn push_shadow(&mut self, queue: usize, ray: Ray, radiance: Rgb, inside: Interiors) {

@@ -19,9 +19,9 @@ mod path;
 mod trail;
 
 pub use cone::Cone;
+pub(crate) use emit::{Bent, Harvest, Queue};
 pub use emit::{Emit, PathState};
-pub(crate) use emit::{Harvest, Queue};
-pub use trail::{Counts, Trail};
+pub use trail::{Chain, Counts, Stage, Trail};
 
 /// Light transport, nothing else.
 pub trait Integrator: Send + Sync {

@@ -43,7 +43,7 @@ pub use shade::{Shade, View};
 pub use table::MaterialTable;
 
 /// A material's place in the [`MaterialTable`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaterialId(pub u32);
 
 impl MaterialId {

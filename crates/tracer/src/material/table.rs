@@ -197,7 +197,7 @@ impl MaterialTable {
             normal = if is_mapped { outwards } else { view.normal };
         }
         shade.frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
-        shade.bsdf = physical.bsdf(&self.textures, view);
+        shade.bsdf.set(&physical.bsdf(&self.textures, view));
         shade.transmissive = physical.is_transmissive();
     }
 
@@ -205,7 +205,7 @@ impl MaterialTable {
     fn classic(lobe: &PhongLobe, view: &View, shade: &mut Shade) {
         shade.frame = Frame::around(facing_normal(view, view.normal));
         shade.emission += lobe.emission;
-        shade.bsdf = lobe.bsdf(view.is_outside());
+        shade.bsdf.set(&lobe.bsdf(view.is_outside()));
         shade.lamp_scale = lobe.lamp_scale();
     }
 
@@ -248,6 +248,11 @@ impl MaterialTable {
     #[inline]
     pub fn needs_tangents(&self, id: MaterialId) -> bool {
         self.facts(id).tangents
+    }
+
+    /// Whether material `id` is a surface of its own, not made of others.
+    pub fn is_simple(&self, id: MaterialId) -> bool {
+        self.compiled(id).is_some_and(|compiled| matches!(compiled, Compiled::Phong(_) | Compiled::Physical(_)))
     }
 
     /// Whether material `id` differs from place to place.

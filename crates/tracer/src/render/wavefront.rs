@@ -9,9 +9,9 @@
 use super::expose::{Start, expose, start};
 use super::{Control, Job, Rays, Stopped, Work};
 use crate::film::{Accumulator, Rect, Run, Tile, runs};
-use crate::integrator::{Emit, Harvest, Queue};
+use crate::integrator::{Bent, Emit, Harvest, Queue};
 use crate::world::{Shadows, WorldHit};
-use juggler_math::Rgb;
+use juggler_math::{Ray, Rgb};
 use std::ops::Range;
 
 /// Samples in flight at once.
@@ -171,6 +171,27 @@ impl<'j> Engine<'j> {
             queue.rays.clear();
             queue.gains.clear();
         }
+        self.bent();
+    }
+
+    /// Answers the ways around corners: one leg of each after the other, as long as they are free.
+    fn bent(&mut self) {
+        let mut open: Vec<Bent> = std::mem::take(&mut self.harvest.bent);
+        for leg in 0.. {
+            let rays: Vec<Ray> = open.iter().filter_map(|bent| bent.legs.get(leg).copied()).collect();
+            if rays.is_empty() {
+                break;
+            }
+            self.rays.shadow += rays.len() as u64;
+            self.through.resize(rays.len(), Rgb::BLACK);
+            self.job.world.transmittance_batch(&rays, Shadows::Physical, &mut self.through);
+            let mut through = self.through.iter();
+            open.retain(|bent| bent.legs.len() <= leg || through.next().is_some_and(|through| !through.is_black()));
+        }
+        for bent in open.drain(..) {
+            self.harvest.radiance[bent.slot as usize] += bent.radiance;
+        }
+        self.harvest.bent = open;
     }
 
     /// The rays of a segment that was left early.
@@ -179,7 +200,7 @@ impl<'j> Engine<'j> {
             let mut rest = self.spare.pop().unwrap_or_default();
             for i in done..queue.len() {
                 // The hits are found again: a ray keeps no memory of having been traced.
-                let ray = juggler_math::Ray { t_max: f32::INFINITY, ..queue.rays[i] };
+                let ray = Ray { t_max: f32::INFINITY, ..queue.rays[i] };
                 rest.push(ray, queue.paths[i]);
             }
             self.stack.push(rest);

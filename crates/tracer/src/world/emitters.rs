@@ -5,6 +5,7 @@ use super::glowing::Glowing;
 use super::{Lamp, Vertex, World};
 use crate::background::AnyBackground;
 use crate::emitter::{AreaEmitter, LightBounds, LightTree, Pick};
+use crate::light::LightSample;
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 
 /// Everything that gives off light.
@@ -62,8 +63,10 @@ pub struct Lighting {
     pub pdf: f32,
     /// Whether a ray may meet it by chance.
     pub can_be_met: bool,
-    /// Whether it is a light of the scene, not a shape that shines.
-    pub is_lamp: bool,
+    /// Number of the light of the scene that it is; nothing for a shape that shines and for the background.
+    pub lamp: Option<u32>,
+    /// Unit normal of the surface that shines; zero where there is none.
+    pub normal: Vec3,
 }
 
 /// A place that light comes to.
@@ -167,6 +170,12 @@ impl Emitters {
 }
 
 impl World {
+    /// Whether more than one thing gives off light.
+    #[inline]
+    pub fn has_many_emitters(&self) -> bool {
+        self.emitters.finite.len() + self.emitters.far.len() > 1
+    }
+
     /// Light that may come to a place from one of all that give light, chosen by `u`.
     pub fn sample_light(&self, to: &Receiver, u: Vec2) -> Option<Lighting> {
         let emitters = &self.emitters;
@@ -188,7 +197,7 @@ impl World {
                 let sample = area.sample(to.point, rest)?;
                 let shape = &emitters.shapes.get(*shape as usize)?.shape;
                 let radiance = shape.radiance(&self.materials, to, sample.wi, sample.normal)?;
-                Some(met(sample.wi, sample.distance, radiance, sample.pdf * chance))
+                Some(met(sample.wi, sample.distance, radiance, sample.pdf * chance, sample.normal))
             }
             Emitter::Shape(shape) => {
                 emitters.shapes.get(*shape as usize)?.shape.sample(&self.materials, to, rest, chance)
@@ -204,13 +213,20 @@ impl World {
             radiance: sample.radiance,
             pdf: sample.pdf * chance,
             can_be_met: false,
-            is_lamp: true,
+            lamp: Some(number),
+            normal: Vec3::ZERO,
         })
+    }
+
+    /// What a light of the scene that shines from a single place brings to a point.
+    pub fn point_light(&self, number: u32, to: &Receiver) -> Option<LightSample> {
+        let light = &self.lamps.get(number as usize)?.at(to.time).light;
+        light.is_point().then(|| light.sample(to.point, Vec2::ZERO))?
     }
 
     fn background_light(&self, u: Vec2, chance: f32) -> Option<Lighting> {
         let sample = self.background.sample(u).filter(|sample| !sample.radiance.is_black())?;
-        Some(met(sample.wi, f32::INFINITY, sample.radiance, sample.pdf * chance))
+        Some(met(sample.wi, f32::INFINITY, sample.radiance, sample.pdf * chance, Vec3::ZERO))
     }
 
     /// Density per steradian with which [`World::sample_light`] picks a direction in which a ray left the world.
@@ -228,6 +244,6 @@ impl World {
 }
 
 /// Light from a surface, which rays meet by chance too.
-pub(super) fn met(wi: Vec3, distance: f32, radiance: Rgb, pdf: f32) -> Lighting {
-    Lighting { wi, distance, radiance, pdf, can_be_met: true, is_lamp: false }
+pub(super) fn met(wi: Vec3, distance: f32, radiance: Rgb, pdf: f32, normal: Vec3) -> Lighting {
+    Lighting { wi, distance, radiance, pdf, can_be_met: true, lamp: None, normal }
 }

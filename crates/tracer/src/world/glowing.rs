@@ -1,7 +1,8 @@
 //! Shapes that shine, in the world's space.
 
 use super::emitters::{Lighting, Receiver, met};
-use super::{Content, Level, Vertex};
+use super::standing::{Standing, standing};
+use super::{Level, Vertex};
 use crate::emitter::LightBounds;
 use crate::material::{Glow, MaterialId, MaterialTable, Sides, View};
 use crate::shape::AnyShape;
@@ -23,9 +24,13 @@ pub struct Glowing {
 impl Glowing {
     /// All shapes of the world's own level, and of those below, that shine.
     pub fn all(top: &Level, materials: &MaterialTable) -> Vec<Self> {
-        let mut found = Vec::new();
-        collect(top, materials, &Place { motion: Transform::IDENTITY.into(), first: 0, inherited: None }, &mut found);
-        found
+        let glow = |shape: &AnyShape, id| materials.glow(id).filter(|_| shape.area().is_finite());
+        let shining = standing(top, usize::MAX, &|shape, id| glow(shape, id).is_some());
+        let with_glow = |standing: Standing| {
+            let Standing { number, shape, motion, material } = standing;
+            Some(Self { number, glow: glow(&shape, material)?, shape, motion, material })
+        };
+        shining.into_iter().filter_map(with_glow).collect()
     }
 
     /// The shape.
@@ -73,8 +78,9 @@ impl Glowing {
         if !(distance > 0.0 && pdf > 0.0 && pdf < f32::INFINITY) {
             return None;
         }
-        let radiance = self.radiance(materials, to, wi, transform.normal(sample.normal))?;
-        Some(met(wi, distance, radiance, pdf * chance))
+        let normal = transform.normal(sample.normal);
+        let radiance = self.radiance(materials, to, wi, normal)?;
+        Some(met(wi, distance, radiance, pdf * chance, normal))
     }
 
     /// Radiance that comes from a place in the direction `wi`, whose outward normal is `normal`; `None` where nothing
@@ -113,43 +119,4 @@ fn density(transform: &Transform, from: Vec3, point: Vec3, normal: Vec3) -> f32 
     let across = transform.matrix().determinant().abs() * (transform.inverse_matrix().transpose() * normal).length();
     let angle = |way: Vec3, normal: Vec3| way.dot(normal).abs() / (way.length_squared() * way.length());
     angle(local, normal) / (angle(world, transform.normal(normal)) * across)
-}
-
-/// Where a level stands, and what it is made of where nothing says.
-struct Place {
-    motion: Motion,
-    first: u32,
-    inherited: Option<MaterialId>,
-}
-
-fn collect(level: &Level, materials: &MaterialTable, place: &Place, found: &mut Vec<Glowing>) {
-    for (number, placed) in (0..).zip(&level.objects) {
-        let number = place.first + level.first(number);
-        let material = placed.material.or(place.inherited);
-        match &placed.content {
-            Content::Shape(shape) => {
-                let glow = material.and_then(|material| Some((material, materials.glow(material)?)));
-                if let Some((material, glow)) = glow.filter(|_| shape.area().is_finite()) {
-                    let motion = placed.motion.then(&place.motion);
-                    found.push(Glowing { number, shape: Arc::clone(shape), motion, material, glow });
-                }
-            }
-            Content::Level(below) if glows(below, materials, material) => {
-                let motion = placed.motion.then(&place.motion);
-                collect(below, materials, &Place { motion, first: number, inherited: material }, found);
-            }
-            Content::Level(_) => {}
-        }
-    }
-}
-
-/// Whether anything in a level shines.
-fn glows(level: &Level, materials: &MaterialTable, inherited: Option<MaterialId>) -> bool {
-    level.objects.iter().any(|placed| {
-        let material = placed.material.or(inherited);
-        match &placed.content {
-            Content::Shape(_) => material.is_some_and(|material| materials.glow(material).is_some()),
-            Content::Level(below) => glows(below, materials, material),
-        }
-    })
 }

@@ -12,6 +12,7 @@ use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use std::borrow::Cow;
 
 mod areas;
+mod casters;
 mod differential;
 mod emitters;
 mod geometry;
@@ -23,6 +24,7 @@ mod large;
 mod level;
 mod merged;
 mod object;
+mod standing;
 mod trace;
 
 #[cfg(test)]
@@ -30,6 +32,7 @@ mod precision;
 #[cfg(test)]
 mod tests;
 
+pub use casters::{Caster, CasterId, Prospect};
 pub use differential::Differential;
 pub use emitters::{Lighting, Receiver};
 pub use geometry::Geometry;
@@ -98,6 +101,7 @@ pub struct World {
     ambient: Rgb,
     background: AnyBackground,
     emitters: Emitters,
+    casters: Vec<Caster>,
     has_transparency: bool,
     has_holes: bool,
     has_media: bool,
@@ -125,6 +129,7 @@ impl World {
         let has_pictures = materials.textures().image_bytes() > 0;
         let moves = top.moves() || lamps.iter().any(Lamp::moves);
         let emitters = Emitters::new(&lamps, Glowing::all(&top, &materials), &background, radius(&top.bounds()));
+        let casters = Caster::all(&top, &materials);
         Self {
             top,
             materials,
@@ -132,6 +137,7 @@ impl World {
             ambient,
             background,
             emitters,
+            casters,
             has_transparency,
             has_holes,
             has_media,
@@ -189,6 +195,12 @@ impl World {
         let tangents = vertex.tangents.as_ref();
         let view = View { wo, around_ior, pick, tangents, ..View::of(&vertex.surface) };
         self.materials.shade(vertex.material, &view)
+    }
+
+    /// Whether nothing about the material at a vertex is left to chance.
+    #[inline]
+    pub fn is_simple(&self, vertex: &Vertex) -> bool {
+        self.materials.is_simple(vertex.material)
     }
 
     /// What is behind the surface of a vertex, if light comes there.

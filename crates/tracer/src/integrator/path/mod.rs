@@ -8,12 +8,14 @@
 //! ```
 
 use super::{Emit, Integrator, PathState};
-use crate::world::{Shadows, Vertex, World};
-use juggler_math::{Ray, Rgb};
+use crate::world::{Receiver, Shadows, Vertex, World};
+use caustic::Met;
+use juggler_math::{Ray, Rgb, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use surface::Seen;
 
+mod caustic;
 mod surface;
 mod volume;
 
@@ -29,7 +31,14 @@ mod dimension {
     pub const ROULETTE: u32 = 3;
     /// How far through a medium.
     pub const FLIGHT: u32 = 4;
+    /// By way of which ball light may come.
+    pub const CASTER: u32 = 5;
+    /// A light that the ball sees, and a place on it.
+    pub const CASTER_LIGHT: u32 = 6;
 }
+
+/// Lights that are asked at the first vertex where there are several.
+const SEVERAL: u32 = 2;
 
 /// Path tracing: light as it is, of every way that it may take.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -58,6 +67,11 @@ pub struct Path {
     /// correctness; nothing for never.
     #[schemars(range(min = 1, max = 10_000))]
     pub roulette_depth: Option<u32>,
+    /// Lights that are asked at the first surface that is not smooth, where most of the noise comes from; nothing for two
+    /// where there are several lights, else one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 64))]
+    pub light_samples: Option<u32>,
 }
 
 impl Path {
@@ -69,7 +83,14 @@ impl Path {
         max_specular: None,
         max_volume: None,
         roulette_depth: None,
+        light_samples: None,
     };
+
+    /// How many lights are asked at a vertex.
+    fn asked(&self, world: &World, path: &PathState) -> u16 {
+        let first = || self.light_samples.unwrap_or(if world.has_many_emitters() { SEVERAL } else { 1 });
+        if path.trail.scattered.is_first() { first().clamp(1, 64) as u16 } else { 1 }
+    }
 
     /// The chance with which a path of this throughput goes on, when it does.
     fn survival(&self, path: &PathState, throughput: Rgb) -> Option<f32> {
@@ -98,30 +119,35 @@ impl Integrator for Path {
             return surface::pass(world, ray, path, vertex, emit);
         }
         let around = surface::around(world, path, interior);
-        let choice = path.sampler.at(dimension::CHOICE).next_2d();
+        let choice = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(dimension::CHOICE).next_2d() };
         let mut shade = world.shade(vertex, -ray.direction, around, choice.x);
         if shade.opacity < 1.0 && choice.y >= shade.opacity {
             return surface::pass(world, ray, path, vertex, emit);
         }
         if !shade.emission.is_black() {
             let light = || world.light_pdf(&path.trail.receiver(ray.time), ray, vertex);
-            emit.add(shade.emission * path.trail.weight(light));
+            let bent = |to: &Receiver, way: &Ray| world.light_pdf(to, way, vertex) * caustic::tilt(way, ray, vertex);
+            let end = Met::Surface(vertex.surface.point);
+            emit.add(shade.emission * caustic::weight(world, path, ray, light, end, bent));
         }
         if path.depth + 1 >= self.max_depth {
             return;
         }
         self.limit(&mut shade.bsdf, path);
-        let seen = Seen::new(ray, vertex, shade, interior);
+        let seen = Seen::new(world, ray, vertex, &shade, interior);
         if !seen.shade.bsdf.is_specular() {
-            seen.ask_light(world, path, emit);
+            seen.ask_lights(self.asked(world, path), world, path, emit);
+            if world.has_casters() {
+                self.ask_by_ball(&seen, world, path, emit);
+            }
         }
-        self.go_on(&seen, path, emit);
+        self.go_on(&seen, world, vertex.object, path, emit);
     }
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
         if !self.flies(world, ray, f32::INFINITY, path, emit) {
             let light = || world.background_pdf(ray.direction);
-            emit.add(world.background(ray) * path.trail.weight(light));
+            emit.add(world.background(ray) * caustic::weight(world, path, ray, light, Met::Background, |_, _| light()));
         }
     }
 

@@ -1,13 +1,13 @@
 //! Paths at surfaces: what a light brings, and where to go on.
 
 use super::super::trail::power_heuristic;
-use super::super::{Counts, Emit, PathState, Trail};
+use super::super::{Chain, Counts, Emit, PathState, Trail};
 use super::{Path, dimension};
 use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
-use crate::medium::InteriorId;
+use crate::medium::{InteriorId, Interiors};
 use crate::surface::Surface;
-use crate::world::{Receiver, Vertex, World};
+use crate::world::{Lighting, Prospect, Receiver, Vertex, World};
 use juggler_math::{Ray, Rgb, Vec3};
 
 /// How often a path may pass holes in a row.
@@ -15,26 +15,28 @@ const MAX_PASSED: u16 = 1000;
 
 /// A vertex as seen by the one who looks.
 pub struct Seen<'a> {
-    surface: &'a Surface,
-    pub shade: Shade,
+    pub surface: &'a Surface,
+    pub shade: &'a Shade,
     /// Unit, towards where the ray came from, in the world and in the frame of the scattering function.
     wo: Vec3,
-    local: Vec3,
-    time: f32,
+    pub local: Vec3,
+    pub time: f32,
     interior: Option<InteriorId>,
+    /// The polished balls that it sees, if it is to ask for lights.
+    pub prospect: Option<Prospect<'a>>,
 }
 
 /// Goes straight on as if nothing had been there.
 pub fn pass(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
     if path.trail.passed < MAX_PASSED {
         let inside = crossed(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
-        let trail = Trail { passed: path.trail.passed + 1, inside, ..path.trail };
+        let trail = Trail { passed: path.trail.passed + 1, inside, chain: Chain::NONE, ..path.trail };
         emit.follow(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, trail, 0);
     }
 }
 
 /// The solids that a path is in once it has crossed the surface of one, inwards or outwards.
-fn crossed(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> crate::medium::Interiors {
+fn crossed(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> Interiors {
     let inside = path.trail.inside;
     match interior {
         Some(id) if inwards => inside.entered(id),
@@ -60,50 +62,126 @@ pub fn around(world: &World, path: &PathState, interior: Option<InteriorId>) -> 
 }
 
 impl<'a> Seen<'a> {
-    pub fn new(ray: &Ray, vertex: &'a Vertex, shade: Shade, interior: Option<InteriorId>) -> Self {
+    pub fn new(
+        world: &'a World,
+        ray: &Ray,
+        vertex: &'a Vertex,
+        shade: &'a Shade,
+        interior: Option<InteriorId>,
+    ) -> Self {
         let wo = -ray.direction;
         let local = shade.frame.to_local(wo);
-        Self { surface: &vertex.surface, shade, wo, local, time: ray.time, interior }
+        let mut seen = Self { surface: &vertex.surface, shade, wo, local, time: ray.time, interior, prospect: None };
+        if world.has_casters() && !seen.shade.bsdf.is_specular() {
+            seen.prospect = Some(world.prospect(&seen.receiver()));
+        }
+        seen
     }
 
-    /// What one light brings.
-    pub fn ask_light(&self, world: &World, path: &PathState, emit: &mut Emit) {
-        let to = Receiver { point: self.surface.point, normal: self.receiving_normal(), time: self.time };
-        let Some(light) = world.sample_light(&to, path.sampler.at(dimension::LIGHT).next_2d()) else { return };
+    /// As what light comes to.
+    fn receiver(&self) -> Receiver {
+        Receiver { point: self.surface.point, normal: self.receiving_normal(), time: self.time }
+    }
+
+    /// What is scattered, and the density with which a path goes on in that direction.
+    pub fn eval_pdf(&self, direction: Vec3, wi: Vec3) -> (Rgb, f32) {
+        let (scattered, pdf) = self.shade.bsdf.eval_pdf(self.local, wi);
+        match &self.prospect {
+            Some(prospect) => {
+                let share = self.guided(prospect);
+                (scattered, pdf * (1.0 - share) + share * prospect.pdf(direction))
+            }
+            None => (scattered, pdf),
+        }
+    }
+
+    /// The share of directions that are those of balls. Light that may also go through has an index of refraction that only the
+    /// scattering function knows.
+    fn guided(&self, prospect: &Prospect) -> f32 {
+        if self.shade.transmissive { 0.0 } else { prospect.share() }
+    }
+
+    /// A direction in which a path may go on.
+    fn sample(&self, path: &PathState) -> Option<(Vec3, BsdfSample)> {
+        let mut u = path.sampler.at(dimension::SCATTER).next_2d();
+        let (frame, bsdf) = (&self.shade.frame, &self.shade.bsdf);
+        let Some(prospect) = &self.prospect else {
+            let sample = bsdf.sample(self.local, u)?;
+            return Some((frame.to_world(sample.wi), sample));
+        };
+        let share = self.guided(prospect);
+        let (is_guided, rest) = crate::bsdf::choose(u.x, share);
+        u.x = rest;
+        if is_guided {
+            let direction = prospect.sample(u)?;
+            let wi = frame.to_local(direction);
+            let (scattered, pdf) = self.eval_pdf(direction, wi);
+            let scatter = bsdf.scatter();
+            return (pdf > 0.0)
+                .then(|| (direction, BsdfSample { wi, weight: scattered / pdf, pdf, scatter, ior: 1.0 }));
+        }
+        let sample = bsdf.sample(self.local, u)?;
+        let direction = frame.to_world(sample.wi);
+        if sample.scatter == Scatter::Specular {
+            return Some((direction, BsdfSample { weight: sample.weight * (1.0 / (1.0 - share)), ..sample }));
+        }
+        let pdf = sample.pdf * (1.0 - share) + share * prospect.pdf(direction);
+        let weight = sample.weight * (sample.pdf / pdf);
+        Some((direction, BsdfSample { weight, pdf, ..sample }))
+    }
+
+    /// What some lights bring.
+    pub fn ask_lights(&self, count: u16, world: &World, path: &PathState, emit: &mut Emit) {
+        let to = self.receiver();
+        let sampler = path.sampler.at(dimension::LIGHT);
+        for part in 0..u32::from(count) {
+            let u = sampler.part(part, u32::from(count)).next_2d();
+            if let Some(light) = world.sample_light(&to, u) {
+                let pdf = light.pdf * f32::from(count);
+                self.ask_light(&Lighting { pdf, ..light }, path, emit);
+            }
+        }
+    }
+
+    /// What a light brings that is picked with its density.
+    fn ask_light(&self, light: &Lighting, path: &PathState, emit: &mut Emit) {
         let wi = self.shade.frame.to_local(light.wi);
         if !self.agree(light.wi, wi) {
             return;
         }
-        let (scattered, pdf) = self.shade.bsdf.eval_pdf(self.local, wi);
+        let (scattered, pdf) = self.eval_pdf(light.wi, wi);
         if scattered.is_black() {
             return;
         }
         let share = if light.can_be_met { power_heuristic(light.pdf, pdf) } else { 1.0 };
-        let scale = if light.is_lamp { self.shade.lamp_scale } else { 1.0 };
+        let scale = if light.lamp.is_some() { self.shade.lamp_scale } else { 1.0 };
         let ray = self.surface.spawn_to(light.wi, light.distance, self.time);
-        let inside = if wi.z * self.local.z < 0.0 { self.crossed(path) } else { path.trail.inside };
+        let inside = self.inside(path, wi);
         emit.if_visible_inside(ray, light.radiance * scattered * (share * scale / light.pdf), inside);
     }
 
-    /// The solids that a path is in that goes through here.
-    fn crossed(&self, path: &PathState) -> crate::medium::Interiors {
-        crossed(path, self.surface.normal.dot(self.wo) > 0.0, self.interior)
+    /// The solids that a path is in that goes on from here in the direction `wi`, which is local.
+    pub fn inside(&self, path: &PathState, wi: Vec3) -> Interiors {
+        if wi.z * self.local.z < 0.0 {
+            crossed(path, self.surface.normal.dot(self.wo) > 0.0, self.interior)
+        } else {
+            path.trail.inside
+        }
     }
 
     /// The normal on the side that light comes to; zero where it may come from both.
-    fn receiving_normal(&self) -> Vec3 {
+    pub fn receiving_normal(&self) -> Vec3 {
         if self.shade.transmissive { Vec3::ZERO } else { self.shade.frame.normal }
     }
 
     /// Whether the true surface has the direction `wi`, which is `local` in the frame, on the side on which the shading
     /// normal has it.
-    fn agree(&self, wi: Vec3, local: Vec3) -> bool {
+    pub fn agree(&self, wi: Vec3, local: Vec3) -> bool {
         let normal = self.surface.normal;
         (normal.dot(wi) * normal.dot(self.wo) < 0.0) == (local.z * self.local.z < 0.0)
     }
 
-    fn trail(&self, path: &PathState, sample: &BsdfSample) -> Trail {
-        let through = sample.wi.z * self.local.z < 0.0;
+    fn trail(&self, world: &World, object: u32, path: &PathState, sample: &BsdfSample, asked: u16) -> Trail {
         let mut scattered = path.trail.scattered;
         let count = match sample.scatter {
             Scatter::Diffuse => &mut scattered.diffuse,
@@ -111,16 +189,14 @@ impl<'a> Seen<'a> {
             Scatter::Specular => &mut scattered.specular,
         };
         *count = count.saturating_add(1);
-        let is_delta = sample.scatter == Scatter::Specular;
-        Trail {
-            from: self.surface.point,
-            normal: self.receiving_normal(),
-            pdf: if is_delta { f32::INFINITY } else { sample.pdf },
-            ior_scale: path.trail.ior_scale * sample.ior * sample.ior,
-            inside: if through { self.crossed(path) } else { path.trail.inside },
-            passed: 0,
-            scattered,
+        let ior_scale = path.trail.ior_scale * sample.ior * sample.ior;
+        let (inside, passed) = (self.inside(path, sample.wi), 0);
+        let chain = self.chain(world, object, path, sample);
+        if sample.scatter == Scatter::Specular {
+            return Trail { pdf: f32::INFINITY, ior_scale, inside, passed, scattered, chain, ..path.trail };
         }
+        let (from, normal) = (self.surface.point, self.receiving_normal());
+        Trail { from, normal, pdf: sample.pdf, asked, ior_scale, inside, passed, scattered, chain }
     }
 }
 
@@ -141,14 +217,12 @@ impl Path {
     }
 
     /// The direction that the material chooses.
-    pub fn go_on(&self, seen: &Seen, path: &PathState, emit: &mut Emit) {
-        let u = path.sampler.at(dimension::SCATTER).next_2d();
-        let Some(sample) = seen.shade.bsdf.sample(seen.local, u) else { return };
-        let wi = seen.shade.frame.to_world(sample.wi);
+    pub fn go_on(&self, seen: &Seen, world: &World, object: u32, path: &PathState, emit: &mut Emit) {
+        let Some((wi, sample)) = seen.sample(path) else { return };
         if !seen.agree(wi, sample.wi) {
             return;
         }
-        let trail = seen.trail(path, &sample);
+        let trail = seen.trail(world, object, path, &sample, self.asked(world, path));
         let throughput = emit.weight() * sample.weight * trail.ior_scale;
         if throughput.is_black() {
             return;

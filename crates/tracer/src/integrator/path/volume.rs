@@ -1,7 +1,7 @@
 //! Paths in media: how far they come, what lights bring to where they are scattered.
 
 use super::super::trail::power_heuristic;
-use super::super::{Emit, PathState, Trail};
+use super::super::{Chain, Emit, PathState, Trail};
 use super::{Path, dimension};
 use crate::medium::HenyeyGreenstein;
 use crate::world::{Receiver, World};
@@ -44,7 +44,16 @@ impl Path {
         let mut scattered = path.trail.scattered;
         scattered.volume = scattered.volume.saturating_add(1);
         let pdf = phase.eval(ray.direction.dot(wi));
-        let trail = Trail { from: to.point, normal: to.normal, pdf, passed: 0, scattered, ..path.trail };
+        let trail = Trail {
+            from: to.point,
+            normal: to.normal,
+            pdf,
+            asked: 1,
+            passed: 0,
+            scattered,
+            chain: Chain::NONE,
+            ..path.trail
+        };
         if let Some(chance) = self.survival(path, emit.weight() * trail.ior_scale) {
             emit.follow(from(wi), Rgb::splat(1.0 / chance), trail, 1);
         }

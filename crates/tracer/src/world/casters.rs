@@ -1,0 +1,226 @@
+//! Polished balls, by way of which lights light other things: paths from there would find the lights by chance only.
+
+use super::standing::{Standing, standing};
+use super::{Level, Receiver, World};
+use crate::bsdf::Bsdf;
+use crate::manifold::{Ball, Way};
+use crate::material::{MaterialId, MaterialTable, View};
+use crate::medium::Medium;
+use crate::shape::AnyShape;
+use crate::surface::Surface;
+use arrayvec::ArrayVec;
+use juggler_math::{Frame, Motion, Rgb, Vec2, Vec3, warp};
+use std::f32::consts::TAU;
+
+/// More balls than this and only the largest are asked: asking takes a look at each.
+const MOST: usize = 16;
+
+/// Of more than this only the first are looked at: with instances there may be any number.
+const MOST_FOUND: usize = 1 << 12;
+
+/// What all balls together must look like, as a share of half the sky times what they reflect, for one to be asked for sure.
+const ALWAYS: f32 = 0.5;
+
+/// The share of directions that are those of balls: at most, and by what they are worth.
+const GUIDED: f32 = 0.15;
+const GUIDED_BY_WORTH: f32 = 8.0;
+
+/// A polished ball in its place.
+#[derive(Clone, Debug)]
+pub struct Caster {
+    /// Where it is.
+    pub ball: Ball,
+    /// Number of the shape.
+    pub object: u32,
+    polish: Polish,
+}
+
+/// What a polished ball is made of.
+#[derive(Clone, Debug)]
+struct Polish {
+    /// How it scatters, from outside, z outwards.
+    bsdf: Bsdf,
+    /// What it mirrors, roughly, and what it lets through: 0 for a way that it does not offer.
+    strengths: [f32; 2],
+    ior: f32,
+    medium: Medium,
+}
+
+impl Polish {
+    /// Of a material that is the same everywhere, if it mirrors or is clear.
+    fn of(id: MaterialId, materials: &MaterialTable) -> Option<Self> {
+        if materials.is_textured(id) || !materials.is_simple(id) {
+            return None;
+        }
+        let surface = Surface::new(Vec3::ZERO, 0.0, Vec3::Z, Vec2::ZERO);
+        let bsdf = materials.shade(id, &View::of(&surface)).bsdf;
+        let interior = materials.interior(id).and_then(|id| materials.interiors().get(id.place()));
+        // Well off the axis: about what it mirrors on average.
+        let deltas = bsdf.deltas(Vec3::new(0.8, 0.0, 0.6));
+        let of = |is_up: bool| {
+            let weights = deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).map(|delta| delta.weight);
+            weights.fold(0.0, |sum: f32, weight| sum + weight.max_channel())
+        };
+        let clear = interior.filter(|interior| bsdf.is_specular() && interior.ior > 1.0 && !interior.medium.scatters());
+        let through = if clear.is_some() { (1.0 - of(true)).max(0.0) } else { 0.0 };
+        let (ior, medium) = interior.map_or((1.0, Medium::default()), |interior| (interior.ior, interior.medium));
+        let strengths = [of(true), through];
+        (strengths != [0.0; 2]).then_some(Self { bsdf, strengths, ior, medium })
+    }
+}
+
+/// A ball and a way by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CasterId {
+    place: u16,
+    is_refracted: bool,
+}
+
+impl Caster {
+    /// The polished balls among the shapes of a world.
+    pub(super) fn all(top: &Level, materials: &MaterialTable) -> Vec<Self> {
+        let is_polished =
+            |shape: &AnyShape, id| matches!(shape, AnyShape::Sphere(_)) && Polish::of(id, materials).is_some();
+        let balls = standing(top, MOST_FOUND, &is_polished);
+        let mut casters: Vec<Self> = balls.iter().filter_map(|ball| Self::new(ball, materials)).collect();
+        casters.sort_by(|a, b| b.ball.radius.total_cmp(&a.ball.radius));
+        casters.truncate(MOST);
+        casters
+    }
+
+    fn new(standing: &Standing, materials: &MaterialTable) -> Option<Self> {
+        let (AnyShape::Sphere(sphere), Motion::Still(transform)) = (&*standing.shape, &standing.motion) else {
+            return None;
+        };
+        let radius = sphere.radius * transform.uniform_scale()?;
+        let ball = Ball { center: transform.origin(), radius };
+        Some(Self { ball, object: standing.number, polish: Polish::of(standing.material, materials)? })
+    }
+
+    /// How light goes by it.
+    #[inline]
+    fn way(&self, is_refracted: bool) -> Way {
+        if is_refracted { Way::Refracted { ior: self.polish.ior } } else { Way::Mirrored }
+    }
+
+    /// What it leaves of light on a way of incidence `sine`.
+    pub fn throughput(&self, way: Way, sine: f32) -> Rgb {
+        let cos = ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt();
+        let scattered = |wo: Vec3, is_up: bool| {
+            let deltas = self.polish.bsdf.deltas(wo);
+            deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).fold(Rgb::BLACK, |sum, delta| sum + delta.weight)
+        };
+        let Way::Refracted { ior } = way else { return scattered(Vec3::new(sine, 0.0, cos), true) };
+        let inside = sine / ior;
+        let cos_inside = ((1.0 - inside) * (1.0 + inside)).sqrt();
+        let in_and_out =
+            scattered(Vec3::new(sine, 0.0, cos), false) * scattered(Vec3::new(inside, 0.0, -cos_inside), true);
+        in_and_out * self.polish.medium.transmittance(2.0 * self.ball.radius * cos_inside)
+    }
+
+    /// What its ways are worth at a place; all 0 where it is not seen from outside, or lies below the plane.
+    #[inline]
+    fn worth(&self, to: &Receiver) -> [f32; 2] {
+        let Ball { center, radius } = self.ball;
+        let below = to.normal != Vec3::ZERO && to.normal.dot(center - to.point) <= -radius;
+        match self.ball.end(to.point).filter(|_| !below) {
+            Some(end) => self.polish.strengths.map(|strength| strength * Ball::seen(end.nearness)),
+            None => [0.0; 2],
+        }
+    }
+}
+
+/// The polished balls as a place sees them.
+pub struct Prospect<'w> {
+    casters: &'w [Caster],
+    from: Receiver,
+    /// Of each, what its ways are worth.
+    worths: ArrayVec<[f32; 2], MOST>,
+    /// Of all.
+    total: f32,
+}
+
+impl Prospect<'_> {
+    /// A way by which light may come, and its chance; none as often as there is little to see.
+    pub fn pick(&self, u: f32) -> Option<(CasterId, f32)> {
+        let all = self.total.max(ALWAYS);
+        let mut target = u * all;
+        for (place, worths) in (0..).zip(&self.worths) {
+            for (is_refracted, worth) in [false, true].into_iter().zip(worths) {
+                if target < *worth {
+                    return Some((CasterId { place, is_refracted }, worth / all));
+                }
+                target -= worth;
+            }
+        }
+        None
+    }
+
+    /// The chance with which [`Prospect::pick`] picks that one.
+    pub fn chance(&self, id: CasterId) -> f32 {
+        let worths = self.worths.get(usize::from(id.place));
+        worths.map_or(0.0, |worths| worths[usize::from(id.is_refracted)]) / self.total.max(ALWAYS)
+    }
+
+    /// The share of directions that are to be those of balls.
+    pub fn share(&self) -> f32 {
+        (GUIDED_BY_WORTH * self.total).min(GUIDED)
+    }
+
+    /// A direction in which a ball is seen.
+    pub fn sample(&self, u: Vec2) -> Option<Vec3> {
+        let mut target = u.x * self.total;
+        for (caster, worths) in self.casters.iter().zip(&self.worths) {
+            let worth = worths[0] + worths[1];
+            if target < worth {
+                let end = caster.ball.end(self.from.point)?;
+                let u = Vec2::new((target / worth).min(1f32.next_down()), u.y);
+                let local = warp::uniform_cone(u, Ball::seen(end.nearness));
+                return Some(Frame::around(-end.toward).to_world(local));
+            }
+            target -= worth;
+        }
+        None
+    }
+
+    /// Density per steradian of [`Prospect::sample`].
+    pub fn pdf(&self, direction: Vec3) -> f32 {
+        let of = |(caster, worths): (&Caster, &[f32; 2])| {
+            let worth = worths[0] + worths[1];
+            let end = caster.ball.end(self.from.point).filter(|_| worth > 0.0)?;
+            let seen = Ball::seen(end.nearness);
+            // The same way round as in sampling, whose rounding must not lead out of the cone.
+            let is_seen = 1.0 + direction.dot(end.toward) <= seen + 1e-6;
+            is_seen.then(|| worth / (self.total * TAU * seen))
+        };
+        self.casters.iter().zip(&self.worths).filter_map(of).sum()
+    }
+}
+
+impl World {
+    /// The ball of a way.
+    #[inline]
+    pub fn caster(&self, id: CasterId) -> Option<(&Caster, Way)> {
+        self.casters.get(usize::from(id.place)).map(|caster| (caster, caster.way(id.is_refracted)))
+    }
+
+    /// Whether there are polished balls.
+    #[inline]
+    pub fn has_casters(&self) -> bool {
+        !self.casters.is_empty()
+    }
+
+    /// The way by a shape, by its number, if it is a polished ball.
+    pub fn caster_of(&self, object: u32, is_refracted: bool) -> Option<CasterId> {
+        let place = self.casters.iter().position(|caster| caster.object == object)?;
+        Some(CasterId { place: place as u16, is_refracted })
+    }
+
+    /// The polished balls as a place sees them.
+    #[inline]
+    pub fn prospect(&self, from: &Receiver) -> Prospect<'_> {
+        let worths: ArrayVec<[f32; 2], MOST> = self.casters.iter().map(|caster| caster.worth(from)).collect();
+        let total = worths.iter().flatten().sum();
+        Prospect { casters: &self.casters, from: *from, worths, total }
+    }
+}
