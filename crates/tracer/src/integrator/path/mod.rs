@@ -29,6 +29,8 @@ mod dimension {
     pub const ROULETTE: u32 = 3;
     /// How far through a medium.
     pub const FLIGHT: u32 = 4;
+    /// Whether a microfacet of rough glass mirrors or refracts.
+    pub const FACET: u32 = 5;
 }
 
 /// Path tracing: light as it is, of every way that it may take.

@@ -143,7 +143,9 @@ impl Path {
     /// The direction that the material chooses.
     pub fn go_on(&self, seen: &Seen, path: &PathState, emit: &mut Emit) {
         let u = path.sampler.at(dimension::SCATTER).next_2d();
-        let Some(sample) = seen.shade.bsdf.sample(seen.local, u) else { return };
+        let bsdf = &seen.shade.bsdf;
+        let choice = if bsdf.has_choice() { path.sampler.at(dimension::FACET).next_1d() } else { 0.0 };
+        let Some(sample) = bsdf.sample(seen.local, u, choice) else { return };
         let wi = seen.shade.frame.to_world(sample.wi);
         if !seen.agree(wi, sample.wi) {
             return;
