@@ -127,21 +127,24 @@ mod tests {
     use super::*;
     use crate::testing::{Random, chi_squared};
 
+    /// One in a thousand for all tests of this file together.
+    const SIGNIFICANCE: f64 = 1e-3 / 3.0;
+
     #[test]
     fn samples_follow_the_weights_and_never_hit_empty_cells() {
         let weights = [0.0, 3.0, 0.0, f32::NAN, 1.0, 0.5, -2.0, 5.5, 0.0, 0.0];
         let distribution = Distribution1D::new(&weights).unwrap();
         let mut random = Random::new(31);
         let mut observed = [0.0; 10];
-        for i in 0..100_000 {
+        for i in 0..1_000_000 {
             // The ends of the range are where rounding would leak.
             let u = [0.0, 1f32.next_down()].get(i).copied().unwrap_or_else(|| random.f32());
             let (x, pdf, cell) = distribution.sample(u);
             assert_eq!((pdf, cell), (distribution.pdf(x), (x * 10.0) as usize), "{u}");
             observed[cell] += 1.0;
         }
-        let expected = [0.0, 3e4, 0.0, 0.0, 1e4, 5e3, 0.0, 5.5e4, 0.0, 0.0];
-        chi_squared(&observed, &expected, 1e-3).unwrap();
+        let expected = [0.0, 3e5, 0.0, 0.0, 1e5, 5e4, 0.0, 5.5e5, 0.0, 0.0];
+        chi_squared(&observed, &expected, SIGNIFICANCE).unwrap();
         assert_eq!((distribution.probability(1), distribution.probability(99)), (0.3, 0.0));
     }
 
@@ -150,11 +153,11 @@ mod tests {
         let distribution = Distribution1D::new(&[1.0, 3.0]).unwrap();
         let mut random = Random::new(32);
         let mut observed = [0.0; 20];
-        for _ in 0..40_000 {
+        for _ in 0..1_000_000 {
             observed[(distribution.sample(random.f32()).0 * 20.0) as usize] += 1.0;
         }
-        let expected: Vec<f64> = (0..20).map(|i| if i < 10 { 1000.0 } else { 3000.0 }).collect();
-        chi_squared(&observed, &expected, 1e-3).unwrap();
+        let expected: Vec<f64> = (0..20).map(|i| if i < 10 { 25e3 } else { 75e3 }).collect();
+        chi_squared(&observed, &expected, SIGNIFICANCE).unwrap();
     }
 
     #[test]
@@ -163,7 +166,7 @@ mod tests {
         let weights: Vec<f32> = (0..12 * 7).map(|i| if i % 5 == 0 { 0.0 } else { random.f32() }).collect();
         let distribution = Distribution2D::new(12, &weights).unwrap();
         let mut observed = vec![0.0; weights.len()];
-        for _ in 0..200_000 {
+        for _ in 0..1_000_000 {
             let (p, pdf) = distribution.sample(random.vec2());
             let cell = (p.y * 7.0) as usize * 12 + (p.x * 12.0) as usize;
             let density = weights[cell] / distribution.mean();
@@ -171,8 +174,8 @@ mod tests {
             observed[cell] += 1.0;
         }
         let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
-        let expected: Vec<f64> = weights.iter().map(|&w| f64::from(w) / total * 200_000.0).collect();
-        chi_squared(&observed, &expected, 1e-3).unwrap();
+        let expected: Vec<f64> = weights.iter().map(|&w| f64::from(w) / total * 1e6).collect();
+        chi_squared(&observed, &expected, SIGNIFICANCE).unwrap();
     }
 
     #[test]

@@ -205,18 +205,47 @@ pub fn z_test(values: &[f64], expected: f64, significance: f64) -> Result<(), St
     Err(format!("mean {mean} of {n} values, expected {expected}: {z:.2} deviations, p = {chance:.3e} < {significance}"))
 }
 
+/// Bands around z, and sectors of each: cells of equal solid angle.
+const Z_CELLS: usize = 16;
+const TURN_CELLS: usize = 32;
+
+/// The integral of a density over a cell, by the midpoints of `steps` by `steps` parts.
+fn by_midpoints(pdf: &impl Fn(Vec3) -> f32, cell: usize, steps: usize) -> f64 {
+    let share = |i: usize, k: usize, cells: usize| (i as f32 + (k as f32 + 0.5) / steps as f32) / cells as f32;
+    let mut sum = 0.0;
+    for k in 0..steps * steps {
+        let z = share(cell / TURN_CELLS, k / steps, Z_CELLS) * 2.0 - 1.0;
+        let (sin, cos) = fun::sin_cos_turns(share(cell % TURN_CELLS, k % steps, TURN_CELLS));
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        sum += f64::from(pdf(Vec3::new(radius * cos, radius * sin, z)));
+    }
+    sum * 4.0 * std::f64::consts::PI / (Z_CELLS * TURN_CELLS * steps * steps) as f64
+}
+
+/// How many of `count` events a cell should get: in ever finer steps, until a step changes the statistic of the test by next
+/// to nothing. Where there were events, the density is not taken for 0 before the finest has been tried.
+fn expected_in(pdf: &impl Fn(Vec3) -> f32, cell: usize, count: f64, was_met: bool) -> f64 {
+    // Not by twos, so that what lies between two rows of one lies beside those of the next.
+    let (mut steps, mut last) = (17, by_midpoints(pdf, cell, 10) * count);
+    loop {
+        let next = by_midpoints(pdf, cell, steps) * count;
+        let is_steady = (next - last) * (next - last) <= 0.02 * next.max(LEAST_EXPECTED);
+        if steps >= 250 || is_steady && (next > 0.0 || !was_met) {
+            return next;
+        }
+        (steps, last) = (steps * 5 / 3, next);
+    }
+}
+
 /// Chi-squared test of a map to directions against its density per steradian: `sample` gives a direction
 /// for a point of the unit square (or `None` when it declines), `pdf` the density of one. Cells of equal
-/// solid angle, `Z_CELLS` bands around z by `TURN_CELLS` sectors; the density is integrated by midpoints.
+/// solid angle; the density is integrated by midpoints, as finely as it takes.
 pub fn chi_squared_directions(
-    sample: impl Fn(Vec2) -> Option<Vec3>,
+    mut sample: impl FnMut(Vec2) -> Option<Vec3>,
     pdf: impl Fn(Vec3) -> f32,
     count: u32,
     significance: f64,
 ) -> Result<(), String> {
-    const Z_CELLS: usize = 16;
-    const TURN_CELLS: usize = 32;
-    const FINE: usize = 24;
     let mut random = Random::new(u64::from(count));
     let mut observed = vec![0.0; Z_CELLS * TURN_CELLS + 1];
     let index = |v: f32, cells: usize| ((v * cells as f32) as usize).min(cells - 1);
@@ -227,17 +256,9 @@ pub fn chi_squared_directions(
         });
         observed[cell] += 1.0;
     }
-    let weight = 4.0 * std::f64::consts::PI / (Z_CELLS * TURN_CELLS * FINE * FINE) as f64 * f64::from(count);
-    let mut expected = vec![0.0; Z_CELLS * TURN_CELLS + 1];
-    for i in 0..Z_CELLS * FINE {
-        let z = (i as f32 + 0.5) / (Z_CELLS * FINE) as f32 * 2.0 - 1.0;
-        for j in 0..TURN_CELLS * FINE {
-            let (sin, cos) = fun::sin_cos_turns((j as f32 + 0.5) / (TURN_CELLS * FINE) as f32);
-            let radius = (1.0 - z * z).max(0.0).sqrt();
-            let density = f64::from(pdf(Vec3::new(radius * cos, radius * sin, z)));
-            expected[i / FINE * TURN_CELLS + j / FINE] += density * weight;
-        }
-    }
+    let mut expected: Vec<f64> =
+        (0..Z_CELLS * TURN_CELLS).map(|cell| expected_in(&pdf, cell, f64::from(count), observed[cell] > 0.0)).collect();
+    expected.push(0.0);
     let total: f64 = expected.iter().sum();
     if total > f64::from(count) * 1.01 {
         return Err(format!("the density integrates to {}", total / f64::from(count)));

@@ -2,6 +2,7 @@
 
 use super::*;
 use juggler_math::testing::{Random, chi_squared, z_test};
+use juggler_math::{DVec3, Frame, fun};
 
 const SAMPLES: u32 = 1_000_000;
 /// One in a thousand for all examples together.
@@ -36,8 +37,7 @@ fn samples_follow_the_density_which_integrates_to_one() {
     for (number, background) in AnyBackground::examples().into_iter().enumerate() {
         let mut random = Random::new(103 + number as u64);
         let mut observed = vec![0.0; BANDS * TURNS + 1];
-        let mut sun = 0.0f64;
-        let (mut none, mut apart) = (0, 0);
+        let (mut disk, mut none, mut apart) = (Vec::new(), 0, 0);
         for _ in 0..SAMPLES {
             let Some(sample) = background.sample(random.vec2()) else {
                 none += 1;
@@ -46,7 +46,7 @@ fn samples_follow_the_density_which_integrates_to_one() {
             let pdf = background.pdf(sample.wi);
             apart += u32::from((pdf / sample.pdf - 1.0).abs() > 1e-3);
             if is_sun(&background, pdf) {
-                sun += 1.0;
+                disk.push(sample.wi);
             } else {
                 observed[cell(sample.wi)] += 1.0;
             }
@@ -67,13 +67,34 @@ fn samples_follow_the_density_which_integrates_to_one() {
             }
         }
         let rest: f64 = expected.iter().sum();
+        let sun = disk.len() as f64;
         let chance = 1.0 - sun / f64::from(SAMPLES);
         assert!((rest / f64::from(SAMPLES) - chance).abs() < 4e-3, "{}: {rest} {sun}", name(&background));
         let fit = (f64::from(SAMPLES) - sun) / rest;
         expected.iter_mut().for_each(|cell| *cell *= fit);
         chi_squared(&observed, &expected, SIGNIFICANCE)
             .unwrap_or_else(|error| panic!("{}: {error}", name(&background)));
+        fills_its_disk(&disk).unwrap_or_else(|error| panic!("{}: {error}", name(&background)));
     }
+}
+
+/// Directions to a small disk are even over it: 4 rings of the same area by 8 sectors. Its centre is their
+/// mean and its rim the farthest of them.
+fn fills_its_disk(directions: &[Vec3]) -> Result<(), String> {
+    if directions.len() < 1000 {
+        return Ok(());
+    }
+    let axis = directions.iter().map(|w| w.as_dvec3()).sum::<DVec3>().normalize();
+    let frame = Frame::around(axis.as_vec3());
+    let squared = |w: &Vec3| w.as_dvec3().distance_squared(axis);
+    let most = directions.iter().map(squared).fold(0.0, f64::max);
+    let mut observed = [0.0; 32];
+    for w in directions {
+        let turn = fun::atan2(w.dot(frame.bitangent), w.dot(frame.tangent)) / std::f32::consts::TAU;
+        let ring = ((squared(w) / most * 4.0) as usize).min(3);
+        observed[ring * 8 + ((turn.rem_euclid(1.0) * 8.0) as usize).min(7)] += 1.0;
+    }
+    chi_squared(&observed, &[directions.len() as f64 / 32.0; 32], SIGNIFICANCE)
 }
 
 fn name(background: &AnyBackground) -> String {

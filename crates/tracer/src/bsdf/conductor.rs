@@ -31,7 +31,7 @@ impl Conductor {
     pub fn compensated(fresnel: Fresnel, alpha: Vec2) -> Self {
         let mut conductor = Self::new(fresnel, alpha);
         if !conductor.ggx.is_smooth() {
-            let lost = energy::mirror_loss_average(conductor.ggx.mean_alpha());
+            let lost = energy::mirror_lost_average(conductor.ggx);
             if lost > 0.0 {
                 let fold = |f: f32| f * f * (1.0 - lost) / (1.0 - f * lost) * (FRAC_1_PI / lost);
                 conductor.multiple = fresnel.average().map(fold);
@@ -69,7 +69,7 @@ impl Conductor {
 
     /// 1 - E.
     fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_loss(self.ggx.round_cos(w), self.ggx.mean_alpha())
+        energy::mirror_lost(self.ggx, w)
     }
 
     /// A direction by visible normals, or by cosine as often as single scattering loses light.
@@ -121,7 +121,7 @@ impl Conductor {
         if self.multiple.is_black() {
             return single;
         }
-        let average = energy::mirror_loss_average(self.ggx.mean_alpha());
+        let average = energy::mirror_lost_average(self.ggx);
         single + self.multiple * (self.lost(wo) * average * std::f32::consts::PI)
     }
 

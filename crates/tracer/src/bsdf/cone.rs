@@ -46,7 +46,7 @@ mod tests {
         let frame = Frame::around(axis);
         let sample = |u| Some(frame.to_local(direction(axis, axis, FRAC_PI_2 * 2.0 / 3.0, u)));
         let pdf = |w: Vec3| if w.z >= 0.5 { 1.0 / (TAU * 0.5) } else { 0.0 };
-        chi_squared_directions(sample, pdf, 100_000, 1e-3).unwrap();
+        chi_squared_directions(sample, pdf, 1_000_000, 1e-3).unwrap();
     }
 
     #[test]
@@ -54,6 +54,6 @@ mod tests {
         // Axis in the surface: the upper half cap, twice as dense.
         let sample = |u| Some(direction(Vec3::X, Vec3::Z, FRAC_PI_2, u));
         let pdf = |w: Vec3| if w.z >= 0.0 && w.x >= 0.0 { 2.0 / TAU } else { 0.0 };
-        chi_squared_directions(sample, pdf, 100_000, 1e-3).unwrap();
+        chi_squared_directions(sample, pdf, 1_000_000, 1e-3).unwrap();
     }
 }

@@ -113,20 +113,26 @@ impl Lobe {
         }
     }
 
-    /// A direction, by a point in the unit square.
+    /// A direction, by a point in the unit square and, where [`Lobe::has_choice`], a third number in [0, 1).
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         match self {
             Self::Lambert(lobe) => lobe.sample(wo, u),
             Self::Conductor(lobe) => lobe.sample(wo, u),
-            Self::Dielectric(lobe) => lobe.sample(wo, u),
-            Self::Thin(lobe) => lobe.sample(wo, u),
+            Self::Dielectric(lobe) => lobe.sample(wo, u, choice),
+            Self::Thin(lobe) => lobe.sample(wo, u, choice),
             Self::OrenNayar(lobe) => lobe.sample(wo, u),
             Self::DiffuseTransmission(lobe) => lobe.sample(wo, u),
             Self::Sheen(lobe) => lobe.sample(wo, u),
             Self::Highlight(lobe) => lobe.sample(wo, u),
             Self::Whitted(lobe) => lobe.sample(wo, u),
         }
+    }
+
+    /// Whether single microfacets mirror some light and let some through, between which a third number chooses.
+    #[inline]
+    pub fn has_choice(&self) -> bool {
+        matches!(self, Self::Dielectric(_) | Self::Thin(_)) && !self.is_specular()
     }
 
     /// See [`Bsdf::albedo`](super::Bsdf::albedo). Never black where the lobe is not.
@@ -218,6 +224,13 @@ pub(crate) fn one_of_two(first: BsdfSample, second: BsdfSample, u: f32) -> Optio
     let (is_first, _) = super::choose(u, probability);
     let (picked, probability) = if is_first { (first, probability) } else { (second, 1.0 - probability) };
     Some(BsdfSample { weight: picked.weight / probability, pdf: probability, ..picked })
+}
+
+/// How often to take the first of two parts of light: by what each carries.
+#[inline]
+pub(crate) fn share_of_first(first: Rgb, second: Rgb) -> f32 {
+    let (a, b) = (sum(first), sum(second));
+    if a + b > 0.0 { a / (a + b) } else { 0.5 }
 }
 
 /// Of all channels.

@@ -35,7 +35,7 @@ pub mod thin;
 pub mod whitted;
 
 #[cfg(test)]
-mod contract;
+pub(crate) mod contract;
 
 pub use conductor::Conductor;
 pub use curve::Fresnel;

@@ -163,20 +163,21 @@ impl Bsdf {
     }
 
     /// A direction where light may come from, by a point in the unit square; `None` if it is absorbed. The lobe (and
-    /// what may happen within it) is chosen by `u.x`, which is stretched to the unit interval again.
+    /// what may happen within it) is chosen by `u.x`, which is stretched to the unit interval again; what a microfacet
+    /// of rough glass does, by `choice` in [0, 1), which counts only where [`Bsdf::has_choice`].
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         match self.lobes.as_slice() {
             [] => None,
             [one] => {
-                let sample = one.lobe.sample(wo, u)?;
+                let sample = one.lobe.sample(wo, u, choice)?;
                 Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
             }
-            _ => self.sample_one_of_many(wo, u),
+            _ => self.sample_one_of_many(wo, u, choice),
         }
     }
 
-    fn sample_one_of_many(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample_one_of_many(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         let shares = self.shares(wo);
         let mut rest = u.x;
         // Rounding may leave a rest at the end, which the last lobe with a share takes.
@@ -190,7 +191,7 @@ impl Bsdf {
         }
         let (index, share, x) = picked?;
         let one = self.lobes.get(index)?;
-        let sample = one.lobe.sample(wo, Vec2::new(x, u.y))?;
+        let sample = one.lobe.sample(wo, Vec2::new(x, u.y), choice)?;
         if sample.scatter == Scatter::Specular {
             let weight = sample.weight * (one.weight * self.dimming(index, wo, sample.wi) / share);
             return Some(BsdfSample { weight, pdf: sample.pdf * share, ..sample });
@@ -198,6 +199,12 @@ impl Bsdf {
         let own = (sample.weight * sample.pdf, sample.pdf);
         let (value, pdf) = self.eval_pdf_of_many(&shares, wo, sample.wi, Some((index, own)));
         (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, pdf, ..sample })
+    }
+
+    /// Whether [`Bsdf::sample`] asks for a third number.
+    #[inline]
+    pub fn has_choice(&self) -> bool {
+        self.lobes.iter().any(|one| one.lobe.has_choice())
     }
 
     /// The sum over all lobes; one may be `known`.

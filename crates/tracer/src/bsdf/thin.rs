@@ -6,7 +6,7 @@
 //! what is mirrored, turned over at the surface.
 
 use super::ggx::Ggx;
-use super::lobe::{Deltas, delta, one_of_two, sum};
+use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
 use super::{BsdfSample, Film, Scatter, choose, energy, fresnel};
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
@@ -37,7 +37,8 @@ impl ThinDielectric {
     /// With all scattering among its microfacets.
     #[inline]
     pub fn compensated(ior: f32, alpha: Vec2) -> Self {
-        Self { compensated: true, ..Self::new(ior, alpha) }
+        let single = Self::new(ior, alpha);
+        Self { compensated: energy::mirror_lost_average(single.ggx) > 0.0, ..single }
     }
 
     /// The same in other colours.
@@ -60,17 +61,15 @@ impl ThinDielectric {
         once.map(|once| 2.0 * once / (1.0 + once))
     }
 
-    /// Probability of mirrored light.
+    /// How often a microfacet that mirrors this share is to mirror.
     #[inline]
-    fn mirrored(&self, cos: f32) -> f32 {
-        let share = energy::mirrored_share(cos, self.ggx.mean_alpha(), |cos| sum(self.share(cos)) / 3.0);
-        let (r, t) = (share * sum(self.reflection), (1.0 - share) * sum(self.transmission));
-        if r + t > 0.0 { r / (r + t) } else { 0.5 }
+    fn chance(&self, share: Rgb) -> f32 {
+        share_of_first(self.reflection * share, self.transmission * (Rgb::WHITE - share))
     }
 
     /// What single scattering loses of light along `w`.
     fn lost(&self, w: Vec3) -> f32 {
-        energy::mirror_loss(self.ggx.round_cos(w), self.ggx.mean_alpha())
+        energy::mirror_lost(self.ggx, w)
     }
 
     /// How much of the light that is scattered more than once is mirrored.
@@ -88,7 +87,8 @@ impl ThinDielectric {
         let is_mirrored = wo.z * wi.z > 0.0;
         let (o, i) = (Vec3::new(wo.x, wo.y, wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));
         let facing = self.ggx.mirror(o, i);
-        let (share, probability) = (self.share(facing.cos), self.mirrored(o.z));
+        let share = self.share(facing.cos);
+        let probability = self.chance(share);
         let (color, average) =
             if is_mirrored { (self.reflection, self.average()) } else { (self.transmission, 1.0 - self.average()) };
         let (share, probability) =
@@ -96,7 +96,7 @@ impl ThinDielectric {
         let (mut value, mut pdf) = (share * facing.value, probability * facing.pdf);
         if self.compensated {
             let lost = self.lost(o);
-            let out = self.lost(i) / energy::mirror_loss_average(self.ggx.mean_alpha());
+            let out = self.lost(i) / energy::mirror_lost_average(self.ggx);
             let cosine = i.z * FRAC_1_PI * average * lost;
             value += Rgb::splat(cosine * out);
             pdf = pdf * (1.0 - lost) + cosine;
@@ -104,9 +104,10 @@ impl ThinDielectric {
         (color * value, pdf)
     }
 
-    /// A direction: mirrored or let through as often as Fresnel's share around `wo` says.
+    /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether light is mirrored by it or goes through, as often
+    /// as R says there.
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }
@@ -115,24 +116,23 @@ impl ThinDielectric {
             return one_of_two(mirrored, through, u.x);
         }
         let up = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let (wi, scatter) = self.pick(up, u)?;
+        let (wi, scatter) = self.pick(up, u, choice)?;
         let wi = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
     }
 
-    fn pick(&self, wo: Vec3, u: Vec2) -> Option<(Vec3, Scatter)> {
+    fn pick(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
         let lost = if self.compensated { self.lost(wo) } else { 0.0 };
         let (is_multiple, x) = choose(u.x, lost);
-        let probability = if is_multiple { self.average() } else { self.mirrored(wo.z) };
-        let (is_mirrored, x) = choose(x, probability);
         let u = Vec2::new(x, u.y);
-        let (wi, scatter) = if is_multiple {
-            (warp::cosine_hemisphere(u), Scatter::Diffuse)
+        let (wi, probability, scatter) = if is_multiple {
+            (warp::cosine_hemisphere(u), self.average(), Scatter::Diffuse)
         } else {
-            (self.ggx.sample_mirror(wo, u)?.0, Scatter::Glossy)
+            let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
+            (wi, self.chance(self.share(facing.cos)), Scatter::Glossy)
         };
-        Some((if is_mirrored { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
+        Some((if choice < probability { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
     }
 
     fn both(&self, wo: Vec3) -> [BsdfSample; 2] {

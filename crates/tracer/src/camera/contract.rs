@@ -1,7 +1,7 @@
 //! What every camera must keep, and the fields that all share.
 
 use super::*;
-use juggler_math::testing::{Random, close, close3};
+use juggler_math::testing::{Random, chi_squared, close, close3};
 use juggler_math::{Ray, Vec2, Vec3, fun};
 
 const SIZE: UVec2 = UVec2::new(64, 48);
@@ -48,6 +48,34 @@ fn pictures_are_not_mirrored() {
         let forward = ray(&camera, SIZE.as_vec2() * 0.5).direction;
         assert!((right - left).cross(top - bottom).dot(forward) < 0.0, "{camera:?}");
     }
+}
+
+/// Wherever a ray crosses the film, it leaves the lens anywhere alike: 8 rings of the same area by 16 sectors.
+#[test]
+fn lenses_are_filled_evenly() {
+    let (mut random, count) = (Random::new(42), 1_000_000);
+    let mut lenses = 0;
+    for camera in AnyCamera::examples() {
+        let AnyCamera::ThinLens(lens) = &camera else { continue };
+        let (radius, axes) = (lens.lens_radius, camera.axes().unwrap());
+        if radius == 0.0 {
+            continue;
+        }
+        let projection = camera.project(SIZE).unwrap();
+        assert!(projection.needs_lens());
+        let mut observed = [0.0; 128];
+        for _ in 0..count {
+            let aside = projection.ray(random.vec2() * SIZE.as_vec2(), random.vec2(), 0.0).origin - axes.eye;
+            assert!(aside.dot(axes.forward).abs() < 1e-5 * radius.max(1.0));
+            let (x, y) = (aside.dot(axes.right) / radius, aside.dot(axes.up) / radius);
+            let ring = (((x * x + y * y) * 8.0) as usize).min(7);
+            let turn = (fun::atan2(y, x) / std::f32::consts::TAU).rem_euclid(1.0);
+            observed[ring * 16 + ((turn * 16.0) as usize).min(15)] += 1.0;
+        }
+        chi_squared(&observed, &[f64::from(count) / 128.0; 128], 5e-4).unwrap_or_else(|e| panic!("{camera:?}: {e}"));
+        lenses += 1;
+    }
+    assert!(lenses > 1);
 }
 
 #[test]

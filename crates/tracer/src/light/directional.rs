@@ -114,11 +114,11 @@ mod tests {
         let size = warp::cone_size(20f32.to_radians());
         let sample = |u| light.sample(Vec3::ZERO, u).map(|sample| sample.wi);
         let (frame, mut random, mut observed) = (Frame::around(axis), Random::new(97), [0.0; 64]);
-        for _ in 0..20_000 {
+        for _ in 0..1_000_000 {
             let u = warp::uniform_cone_inverse(frame.to_local(sample(random.vec2()).unwrap()), size);
             observed[((u.x * 8.0) as usize).min(7) * 8 + ((u.y * 8.0) as usize).min(7)] += 1.0;
         }
-        chi_squared(&observed, &[312.5; 64], 1e-3).unwrap();
+        chi_squared(&observed, &[15_625.0; 64], 1e-3).unwrap();
         let rim = sample(Vec2::new(1f32.next_down(), 0.3)).unwrap();
         assert!((fun::acos(rim.dot(axis)).to_degrees() - 20.0).abs() < 1e-3);
         assert!(!light.is_point() && Directional { samples: 9, ..Directional::default() }.shadow_samples() == 1);

@@ -43,7 +43,7 @@ fn ways_through_a_medium_are_weighted_to_what_beer_and_lambert_say() {
 fn places_of_scattering_follow_the_exponential() {
     let fog = medium(r#"{"scattering": 0.7}"#);
     let mut random = Random::new(82);
-    let (mut observed, count) = ([0.0; 20], 100_000);
+    let (mut observed, count) = ([0.0; 20], 1_000_000);
     for _ in 0..count {
         let at = fog.sample(f32::INFINITY, Rgb::WHITE, random.f32(), random.f32()).scattered_at.unwrap();
         observed[((at * 5.0) as usize).min(19)] += 1.0;

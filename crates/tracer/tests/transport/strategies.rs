@@ -47,7 +47,7 @@ impl Integrator for Plain {
                 emit.if_visible(shadow, light.radiance * scattered * (1.0 / light.pdf));
             }
         }
-        if let Some(sample) = shade.bsdf.sample(local, path.sampler.at(2).next_2d()) {
+        if let Some(sample) = shade.bsdf.sample(local, path.sampler.at(2).next_2d(), path.sampler.at(3).next_1d()) {
             let pdf = if sample.scatter == Scatter::Specular { f32::INFINITY } else { sample.pdf };
             let way = surface.spawn(shade.frame.to_world(sample.wi), ray.time);
             emit.follow(way, sample.weight, Trail { pdf, ..path.trail }, 1);

@@ -7,6 +7,17 @@ use crate::bsdf::{
 };
 use juggler_math::{Rgb, Vec2};
 
+/// How broad lobes are beside the steps by which the chi-squared test integrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Breadth {
+    /// Finer.
+    Needle,
+    /// Broad enough seen from above.
+    Narrow,
+    /// Always.
+    Broad,
+}
+
 /// One of the list.
 pub(super) struct Example {
     pub name: String,
@@ -15,13 +26,13 @@ pub(super) struct Example {
     pub both_sides: bool,
     /// Whether no light at all is lost: a number is by how much it may miss, 0 for those that may lose light.
     pub white_within: f32,
-    /// Whether chi-squared cells are finer than its lobes.
-    pub is_broad: bool,
+    /// How broad its lobes are.
+    pub breadth: Breadth,
 }
 
 impl Example {
     pub fn new(name: impl Into<String>, bsdf: impl Into<Bsdf>) -> Self {
-        Self { name: name.into(), bsdf: bsdf.into(), both_sides: false, white_within: 0.0, is_broad: true }
+        Self { name: name.into(), bsdf: bsdf.into(), both_sides: false, white_within: 0.0, breadth: Breadth::Broad }
     }
 
     pub fn both_sides(self) -> Self {
@@ -32,8 +43,8 @@ impl Example {
         Self { white_within: within, ..self }
     }
 
-    pub fn narrow(self) -> Self {
-        Self { is_broad: false, ..self }
+    pub fn of(self, breadth: Breadth) -> Self {
+        Self { breadth: self.breadth.min(breadth), ..self }
     }
 }
 
@@ -49,7 +60,12 @@ pub(super) fn examples() -> Vec<Example> {
         Example::new("white lambert", Lambert { albedo: Rgb::WHITE }).white(1e-5),
     ];
     for (x, y) in ALPHAS {
-        let rough = |example: Example| if x.min(y) < 0.2 { example.narrow() } else { example };
+        let breadth = match x.min(y) {
+            least if least < 0.05 => Breadth::Needle,
+            least if least < 0.2 => Breadth::Narrow,
+            _ => Breadth::Broad,
+        };
+        let rough = |example: Example| example.of(breadth);
         all.extend(conductors(Vec2::new(x, y)).into_iter().map(rough));
         all.extend(dielectrics(Vec2::new(x, y)).into_iter().map(rough));
     }
@@ -64,7 +80,7 @@ pub(super) fn examples() -> Vec<Example> {
 
 /// How far a compensated lobe may miss white: brushed ones are compensated as if stretched.
 fn within(alpha: Vec2) -> f32 {
-    if alpha.x == alpha.y { 0.02 } else { 0.1 }
+    if alpha.x == alpha.y { 0.015 } else { 0.05 }
 }
 
 fn conductors(alpha: Vec2) -> Vec<Example> {
@@ -87,16 +103,13 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
     // All of them at three, from both sides anyway.
     let iors = if alpha.x == alpha.y && (alpha.x == 0.0 || alpha.x > 0.2) { &all_iors[..] } else { &all_iors[3..5] };
     for ior in iors.iter().copied() {
-        let narrow = |example: Example| if ior == 1.01 { example.narrow() } else { example };
+        let narrow = |example: Example| if ior == 1.01 { example.of(Breadth::Needle) } else { example };
         let compensated = Dielectric::compensated(ior, alpha);
         all.push(narrow(Example::new(format!("dielectric {ior} {alpha}"), Dielectric::new(ior, alpha))));
         let compensated = Example::new(format!("compensated dielectric {ior} {alpha}"), compensated);
-        // At 1.01 the critical angle grazes; there the tables are too coarse for white.
-        all.push(narrow(
-            compensated.white(
-                within(alpha) * if alpha.x == alpha.y { 1.0 } else { 1.5 } * if ior == 1.01 { 0.0 } else { 1.0 },
-            ),
-        ));
+        // At 1.01 the critical angle grazes; there the tables are too coarse for white. Brushed ones may lose light.
+        let white = if alpha.x == alpha.y && ior != 1.01 { within(alpha) } else { 0.0 };
+        all.push(narrow(compensated.white(white)));
     }
     all.push(Example::new(format!("thin {alpha}"), ThinDielectric::new(1.5, alpha).tinted(pink, cyan)));
     let thin = ThinDielectric::compensated(1.5, alpha);

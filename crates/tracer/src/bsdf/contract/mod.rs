@@ -2,14 +2,18 @@
 
 mod energy;
 mod examples;
+mod grid;
 mod numbers;
 mod principled;
 mod sampling;
 
-use crate::bsdf::{Bsdf, BsdfSample};
+use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use examples::{Example, examples};
-use juggler_math::testing::Random;
+use juggler_math::testing::{Random, chi_squared_directions};
 use juggler_math::{Rgb, Vec2, Vec3};
+
+/// What tables and sampling may add to the light that there is.
+const MORE: f32 = 0.02;
 
 /// Directions towards the viewer, from straight above to grazing; from below too if `both` sides are to be seen.
 fn views(both: bool) -> Vec<Vec3> {
@@ -17,6 +21,19 @@ fn views(both: bool) -> Vec<Vec3> {
     let above = above.map(|(x, y, z)| Vec3::new(x, y, z).normalize());
     let below = above.map(|w| Vec3::new(w.x, w.y, -w.z));
     if both { above.into_iter().chain(below).collect() } else { above.to_vec() }
+}
+
+/// Chi-squared test of directions seen from `wo`, without deltas, against their density.
+pub fn follows_its_density(bsdf: &Bsdf, wo: Vec3, count: u32, significance: f64) -> Result<(), String> {
+    let mut random = Random::new(84);
+    // Turned over, since the test's cells are longest around its z.
+    let sample = |u| {
+        let sample = bsdf.sample(wo, u, random.f32()).filter(|sample| sample.scatter != Scatter::Specular)?;
+        Some(Vec3::new(sample.wi.z, sample.wi.x, sample.wi.y))
+    };
+    // Strips thinner than the steps of its integral are not impossible either.
+    let pdf = |wi: Vec3| bsdf.pdf(wo, Vec3::new(wi.y, wi.z, wi.x)) + 1e-7;
+    chi_squared_directions(sample, pdf, count, significance)
 }
 
 /// The weight of a sample without the scale of radiance that crosses a border: what light of one particle is left.
@@ -28,13 +45,14 @@ fn energy_of(sample: &BsdfSample) -> Rgb {
 fn furnace(bsdf: &Bsdf, wo: Vec3, side: u32) -> Rgb {
     let mut random = Random::new(7);
     let mut sum = [0.0f64; 3];
-    for i in 0..side {
-        for j in 0..side {
-            let u = (Vec2::new(i as f32, j as f32) + random.vec2()) / side as f32;
-            if let Some(sample) = bsdf.sample(wo, u.min(Vec2::splat(1f32.next_down()))) {
-                let energy = energy_of(&sample).to_array();
-                sum.iter_mut().zip(energy).for_each(|(s, e)| *s += f64::from(e));
-            }
+    for i in 0..side * side {
+        let cell = Vec2::new((i % side) as f32, (i / side) as f32);
+        let u = (cell + random.vec2()) / side as f32;
+        // The golden ratio's sequence is even in each row and column.
+        let choice = (f64::from(i) * 0.618_033_988_749_894_8).fract() as f32;
+        if let Some(sample) = bsdf.sample(wo, u.min(Vec2::splat(1f32.next_down())), choice.min(1f32.next_down())) {
+            let energy = energy_of(&sample).to_array();
+            sum.iter_mut().zip(energy).for_each(|(s, e)| *s += f64::from(e));
         }
     }
     let count = f64::from(side * side);

@@ -27,7 +27,7 @@ fn everything_is_finite_and_not_negative() {
             assert!(fine(bsdf.albedo(*wo)), "{name} {wo}");
             assert!(bsdf.deltas(*wo).iter().all(|delta| fine(delta.weight)), "{name} {wo}");
             for (x, y) in us.into_iter().flat_map(|x| us.map(|y| (x, y))) {
-                if let Some(sample) = bsdf.sample(*wo, Vec2::new(x, y)) {
+                if let Some(sample) = bsdf.sample(*wo, Vec2::new(x, y), random.f32()) {
                     assert!(
                         fine(sample.weight) && sample.pdf > 0.0 && sample.pdf.is_finite(),
                         "{name} {wo} {sample:?}"
@@ -45,7 +45,7 @@ fn opaque_lobes_are_black_from_below() {
     for Example { name, bsdf, .. } in examples().into_iter().filter(|e| !e.both_sides && !e.name.contains("glass")) {
         for _ in 0..100 {
             let wo = -random.unit_vector().abs();
-            assert!(bsdf.sample(wo, random.vec2()).is_none() && bsdf.albedo(wo).is_black(), "{name}");
+            assert!(bsdf.sample(wo, random.vec2(), random.f32()).is_none() && bsdf.albedo(wo).is_black(), "{name}");
             assert!(bsdf.eval_pdf(wo, random.unit_vector()) == (Rgb::BLACK, 0.0), "{name}");
         }
     }
@@ -58,7 +58,7 @@ fn what_has_no_border_lets_light_straight_on() {
     for _ in 0..1000 {
         let wo = random.unit_vector();
         for bsdf in [Bsdf::from(Dielectric::new(1.0, Vec2::ZERO)), ThinDielectric::new(1.0, Vec2::ZERO).into()] {
-            let sample = bsdf.sample(wo, random.vec2()).unwrap();
+            let sample = bsdf.sample(wo, random.vec2(), random.f32()).unwrap();
             assert_eq!((sample.wi, sample.weight, sample.pdf, sample.ior), (-wo, Rgb::WHITE, 1.0, 1.0));
             assert_eq!(bsdf.deltas(wo).len(), 1);
         }

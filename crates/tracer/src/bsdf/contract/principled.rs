@@ -1,6 +1,7 @@
-//! Examples of the surface that glTF describes.
+//! Examples of the surface that glTF describes, and its white furnaces.
 
 use super::examples::Example;
+use super::{MORE, furnace, views};
 use crate::bsdf::Principled;
 use juggler_math::Rgb;
 
@@ -57,4 +58,44 @@ fn whites() -> Vec<Example> {
         Example::new(format!("principled white {name}"), numbers.bsdf(1.5)).white(within)
     };
     whites.map(named).into()
+}
+
+/// White ones, and the least that a furnace shows of them at any roughness: what lies under a layer that spreads light
+/// loses some, the more of a mirror (see `sum.rs`), and so does what is brushed.
+fn white_ones() -> Vec<(&'static str, Principled, f32)> {
+    let white = Principled::default();
+    let metal = Principled { metallic: 1.0, ..white };
+    let varnished = |base: Principled, clearcoat_roughness| Principled { clearcoat: 1.0, clearcoat_roughness, ..base };
+    let velvet = |base: Principled| Principled { sheen_color: Rgb::WHITE, sheen_roughness: 0.5, ..base };
+    vec![
+        ("matt", Principled { specular: 0.0, ..white }, 0.9999),
+        ("plastic", white, 0.995),
+        ("metal", metal, 0.995),
+        ("half metal", Principled { metallic: 0.5, ..white }, 0.99),
+        ("glass", Principled { transmission: 1.0, ..white }, 0.99),
+        ("pane", Principled { transmission: 1.0, thin_walled: true, ..white }, 0.99),
+        ("half glass", Principled { transmission: 0.5, ..white }, 0.99),
+        ("petal", Principled { diffuse_transmission: 0.5, ..white }, 0.99),
+        ("varnished plastic", varnished(white, 0.0), 0.985),
+        ("roughly varnished plastic", varnished(white, 0.6), 0.99),
+        ("varnished metal", varnished(metal, 0.0), 0.95),
+        ("velvet", velvet(white), 0.99),
+        ("velvet metal", velvet(metal), 0.885),
+        ("brushed metal", Principled { anisotropy: 0.7, ..metal }, 0.97),
+    ]
+}
+
+#[test]
+fn white_ones_are_white_at_any_roughness() {
+    for (name, base, least) in white_ones() {
+        for roughness in [0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 1.0] {
+            let numbers = Principled { roughness, ..base };
+            let bsdf = numbers.bsdf(1.5);
+            for wo in views(numbers.transmission == 1.0) {
+                let energy = furnace(&bsdf, wo, 64);
+                let near = energy.to_array().iter().all(|share| (least..=1.0 + MORE).contains(share));
+                assert!(near, "{name}, {roughness}, {wo}: {energy:?}");
+            }
+        }
+    }
 }

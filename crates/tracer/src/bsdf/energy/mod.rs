@@ -12,6 +12,7 @@ mod border_mirrored;
 mod mirror_grazing;
 mod mirror_lost;
 mod sheen_albedo;
+mod stretched;
 
 #[cfg(test)]
 mod tests;
@@ -22,15 +23,16 @@ use border_mirrored::{MIRRORED, MIRRORED_MEAN};
 use mirror_grazing::MIRROR_GRAZING;
 use mirror_lost::{MIRROR_LOST, MIRROR_LOST_MEAN};
 use sheen_albedo::SHEEN;
+pub use stretched::{border_average, border_lost, mirror_lost, mirror_lost_average};
 
 /// Entries along the cosine's coordinate, from 0 to 1.
-const COS: usize = 16;
+const COS: usize = 32;
 /// Entries along √alpha, from 0 to 1.
-const ALPHA: usize = 16;
+const ALPHA: usize = 32;
 /// The same for the tables of dielectrics.
 const ALPHA_CLEAR: usize = 12;
 /// Entries along √((η - 1) / (η + 1)), from 0 to [`STEEPEST`].
-const IOR: usize = 8;
+const IOR: usize = 10;
 /// √0.6: η = 4. Beyond, 4 stands for all.
 const STEEPEST: f32 = 0.774_596_7;
 
@@ -124,10 +126,12 @@ pub fn dielectric_loss(cos: f32, alpha: f32, ior: f32) -> f32 {
     (plain_loss(cos, alpha, ior) + through(&LOST, cos, alpha, ior)).clamp(0.0, 1.0)
 }
 
-/// How far the surface's own angle tells what its microfacets do.
+/// How far the surface's own angle tells what its microfacets do: not at all once they blur the critical angle by more
+/// than the table's entries are apart.
 #[inline]
 fn polish(alpha: f32) -> f32 {
-    let squared = (1.0 - alpha) * (1.0 - alpha);
+    let rest = (1.0 - 4.0 * alpha).max(0.0);
+    let squared = rest * rest;
     squared * squared
 }
 

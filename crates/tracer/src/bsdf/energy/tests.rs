@@ -1,5 +1,5 @@
 //! The tables against integrals; with `JUGGLER_BLESS=1` they are made anew:
-//! `JUGGLER_BLESS=1 cargo test -p juggler-tracer tables_are_what_lobes_integrate_to && cargo fmt`.
+//! `JUGGLER_BLESS=1 cargo test -p juggler-tracer tables_are_what_lobes_integrate_to`.
 
 use super::*;
 use crate::bsdf::Sheen;
@@ -134,9 +134,14 @@ fn sheen_row(alpha: usize, side: u32) -> Vec<i16> {
     (0..COS).map(|c| stored(at(entry(c, COS)))).collect()
 }
 
+/// Alpha of a border's entry: the first is what just is not smooth.
+fn clear_alpha(i: usize) -> f32 {
+    entry(i, ALPHA_CLEAR).max(Ggx::SMOOTH)
+}
+
 /// Corrections of a border's [mirrored, lost] light.
 fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> [Vec<i16>; 2] {
-    let (ior, alpha) = (ior_of(side, ior), entry(alpha, ALPHA_CLEAR));
+    let (ior, alpha) = (ior_of(side, ior), clear_alpha(alpha));
     let at = |c| {
         let cos = entry(c, COS);
         let (mirrored, lost) = integrate(cos, alpha, Some(ior), count);
@@ -149,7 +154,7 @@ fn clear_row(side: usize, ior: usize, alpha: usize, count: u32) -> [Vec<i16>; 2]
 
 /// The mean of mirrored (`k` 0) or lost light with these corrections.
 fn clear_mean(table: &[Vec<Vec<Vec<i16>>>], side: usize, i: usize, a: usize, k: usize) -> i16 {
-    let (ior, alpha) = (ior_of(side, i), entry(a, ALPHA_CLEAR));
+    let (ior, alpha) = (ior_of(side, i), clear_alpha(a));
     let row: [i16; COS] = table[side][i][a].as_slice().try_into().unwrap();
     mean(|cos| {
         let plain = if k == 0 { plain_mirrored(cos, alpha, ior) } else { plain_loss(cos, alpha, ior) };
@@ -162,7 +167,8 @@ fn write(name: &str, what: &str, uses: &str, tables: &[(&str, &str, String)]) {
     let mut text = format!("//! {what} Made by `tests.rs`, which says how: do not edit.\n\nuse super::{uses};\n");
     for (constant, kind, table) in tables {
         let which = if constant.ends_with("_MEAN") { "Its means." } else { what };
-        text += &format!("\n/// {which}\npub(super) const {constant}: {kind} = {table};\n");
+        let rows = table.replace("], [", "],\n    [");
+        text += &format!("\n/// {which}\n#[rustfmt::skip]\npub(super) const {constant}: {kind} = {rows};\n");
     }
     let path = format!("{}/src/bsdf/energy/{name}.rs", env!("CARGO_MANIFEST_DIR"));
     std::fs::write(path, text).unwrap();

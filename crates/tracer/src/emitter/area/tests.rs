@@ -5,7 +5,9 @@ use juggler_math::testing::{Random, chi_squared, chi_squared_directions, z_test}
 use juggler_math::{Frame, fun, vec3, warp};
 use std::f64::consts::PI;
 
-const SIGNIFICANCE: f64 = 1e-4;
+/// One in a thousand for all tests of densities here together, of which there are not quite sixty.
+const SIGNIFICANCE: f64 = 1.7e-5;
+const SAMPLES: u32 = 1_000_000;
 
 fn rectangle(corner: Vec3, a: Vec3, b: Vec3) -> AreaEmitter {
     AreaEmitter::Rectangle(RectangleEmitter::new(corner, [a, b]).unwrap())
@@ -79,7 +81,7 @@ fn planar_samples_follow_their_density() {
         };
         let place = |u: f64, v: f64| (corner + edges[0] * u + edges[1] * v).as_vec3();
         for from in PLACES {
-            let count = 40_000;
+            let count = SAMPLES;
             let mut observed = [0.0; 64];
             for _ in 0..count {
                 let sample = light.sample(from, random.vec2()).unwrap();
@@ -114,15 +116,15 @@ fn narrow_views_follow_their_density() {
         for light in [rectangle(corner, a, b), triangle([corner, corner + a, corner + b])] {
             let place = |u: f64, v: f64| (corner.as_dvec3() + (a.as_dvec3() * u + b.as_dvec3() * v)).as_vec3();
             let mut observed = [0.0; 64];
-            for _ in 0..40_000 {
+            for _ in 0..SAMPLES {
                 let sample = light.sample(from, random.vec2()).unwrap();
                 let cell = |v: f32| ((v * 8.0) as usize).min(7);
                 observed[cell(sample.edges.x) * 8 + cell(sample.edges.y)] += 1.0;
             }
-            let expected = expected_cells(&light, from, 40_000.0, place);
+            let expected = expected_cells(&light, from, f64::from(SAMPLES), place);
             let total: f64 = expected.iter().sum();
-            assert!((total / 4e4 - 1.0).abs() < 0.02, "{light:?} {from}: {total}");
-            let fitted: Vec<f64> = expected.iter().map(|cell| cell * 4e4 / total).collect();
+            assert!((total / f64::from(SAMPLES) - 1.0).abs() < 0.02, "{light:?} {from}: {total}");
+            let fitted: Vec<f64> = expected.iter().map(|cell| cell * f64::from(SAMPLES) / total).collect();
             chi_squared(&observed, &fitted, SIGNIFICANCE).unwrap_or_else(|e| panic!("{light:?} {from}: {e}"));
         }
     }
@@ -138,14 +140,15 @@ fn directions_to_round_ones_follow_their_density() {
         let size = 1.0 - (1.0 - 0.49 / to_center.length_squared()).sqrt();
         let frame = Frame::around(to_center.normalize());
         let mut observed = [0.0; 64];
-        for _ in 0..40_000 {
+        for _ in 0..SAMPLES {
             let sample = light.sample(from, random.vec2()).unwrap();
             let u = warp::uniform_cone_inverse(frame.to_local(sample.wi), size);
             observed[((u.x * 8.0) as usize).min(7) * 8 + ((u.y * 8.0) as usize).min(7)] += 1.0;
             assert!((sample.pdf / warp::uniform_cone_pdf(size) - 1.0).abs() < 1e-3, "{from}");
             assert!((sample.point.distance(center) - 0.7).abs() < 1e-6);
         }
-        chi_squared(&observed, &[625.0; 64], SIGNIFICANCE).unwrap_or_else(|e| panic!("{from}: {e}"));
+        chi_squared(&observed, &[f64::from(SAMPLES) / 64.0; 64], SIGNIFICANCE)
+            .unwrap_or_else(|e| panic!("{from}: {e}"));
     }
     for from in [center, center + vec3(0.0, 0.0, 0.6), center + vec3(-0.3, 0.1, 0.0)] {
         let hit = |w: Vec3| {
@@ -154,7 +157,7 @@ fn directions_to_round_ones_follow_their_density() {
             from + (w * (along + (along * along - to.length_squared() + 0.49).sqrt())).as_vec3()
         };
         let pdf = |w: Vec3| light.pdf(from, hit(w));
-        chi_squared_directions(|u| Some(light.sample(from, u)?.wi), pdf, 100_000, SIGNIFICANCE)
+        chi_squared_directions(|u| Some(light.sample(from, u)?.wi), pdf, SAMPLES, SIGNIFICANCE)
             .unwrap_or_else(|e| panic!("{from}: {e}"));
     }
     let flat = disk(center, Vec3::NEG_Y, 0.8);
@@ -165,7 +168,7 @@ fn directions_to_round_ones_follow_their_density() {
             (t > 0.0 && point.distance(center) < 0.8).then_some(point)
         };
         let pdf = |w: Vec3| hit(w).map_or(0.0, |point| flat.pdf(from, point));
-        chi_squared_directions(|u| Some(flat.sample(from, u)?.wi), pdf, 100_000, SIGNIFICANCE)
+        chi_squared_directions(|u| Some(flat.sample(from, u)?.wi), pdf, SAMPLES, SIGNIFICANCE)
             .unwrap_or_else(|e| panic!("{from}: {e}"));
     }
 }

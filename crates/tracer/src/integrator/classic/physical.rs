@@ -49,7 +49,7 @@ impl Classic {
         for (child, sample) in (0..).zip(&deltas) {
             self.follow_sample(seen, path, sample, child, emit);
         }
-        let sample = seen.shade.bsdf.sample(seen.wo, sampler.next_2d());
+        let sample = seen.shade.bsdf.sample(seen.wo, sampler.next_2d(), sampler.next_1d());
         if let Some(glossy) = sample.filter(|sample| sample.scatter == Scatter::Glossy) {
             self.follow_sample(seen, path, &glossy, deltas.len() as u32, emit);
         }

@@ -31,10 +31,12 @@ mod dimension {
     pub const ROULETTE: u32 = 3;
     /// How far through a medium.
     pub const FLIGHT: u32 = 4;
+    /// Whether a microfacet of rough glass mirrors or refracts.
+    pub const FACET: u32 = 5;
     /// By way of which ball light may come.
-    pub const CASTER: u32 = 5;
+    pub const CASTER: u32 = 6;
     /// A light that the ball sees, and a place on it.
-    pub const CASTER_LIGHT: u32 = 6;
+    pub const CASTER_LIGHT: u32 = 7;
 }
 
 /// Lights that are asked at the first vertex where there are several.

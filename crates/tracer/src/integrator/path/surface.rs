@@ -105,8 +105,9 @@ impl<'a> Seen<'a> {
     fn sample(&self, path: &PathState) -> Option<(Vec3, BsdfSample)> {
         let mut u = path.sampler.at(dimension::SCATTER).next_2d();
         let (frame, bsdf) = (&self.shade.frame, &self.shade.bsdf);
+        let choice = if bsdf.has_choice() { path.sampler.at(dimension::FACET).next_1d() } else { 0.0 };
         let Some(prospect) = &self.prospect else {
-            let sample = bsdf.sample(self.local, u)?;
+            let sample = bsdf.sample(self.local, u, choice)?;
             return Some((frame.to_world(sample.wi), sample));
         };
         let share = self.guided(prospect);
@@ -120,7 +121,7 @@ impl<'a> Seen<'a> {
             return (pdf > 0.0)
                 .then(|| (direction, BsdfSample { wi, weight: scattered / pdf, pdf, scatter, ior: 1.0 }));
         }
-        let sample = bsdf.sample(self.local, u)?;
+        let sample = bsdf.sample(self.local, u, choice)?;
         let direction = frame.to_world(sample.wi);
         if sample.scatter == Scatter::Specular {
             return Some((direction, BsdfSample { weight: sample.weight * (1.0 / (1.0 - share)), ..sample }));

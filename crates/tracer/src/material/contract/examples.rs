@@ -1,6 +1,7 @@
 //! What every material keeps, run over the examples of every kind.
 
 use super::*;
+use crate::bsdf::Scatter;
 use juggler_math::testing::{Random, close, close3};
 
 /// Every example with the scene's names at hand.
@@ -33,10 +34,10 @@ fn energy(name: &str, shade: &Shade, wo: Vec3, random: &mut Random) -> Rgb {
     for i in 0..count * count {
         let cell = Vec2::new((i % count) as f32, (i / count) as f32);
         let u = ((cell + random.vec2()) / count as f32).min(Vec2::splat(1f32.next_down()));
-        let Some(sample) = shade.bsdf.sample(wo, u) else { continue };
+        let Some(sample) = shade.bsdf.sample(wo, u, random.f32()) else { continue };
         assert!(sample.weight.to_array().iter().all(|w| *w >= 0.0 && w.is_finite()), "{name}: {sample:?}");
         assert!(sample.wi.is_normalized() && sample.pdf > 0.0, "{name}: {sample:?}");
-        if sample.scatter != crate::bsdf::Scatter::Specular {
+        if sample.scatter != Scatter::Specular {
             let (value, pdf) = shade.bsdf.eval_pdf(wo, sample.wi);
             let (told, asked) = (sample.weight.g * sample.pdf, value.g);
             // Of what is very narrow, a rounded direction is another one.
@@ -67,6 +68,33 @@ fn light_is_finite_and_no_more_than_there_was() {
             assert!(energy.max_channel() <= 1.1, "{name}: {energy:?} {shade:?}");
         }
     }
+}
+
+/// A million samples of each example in all, somewhere, seen from anywhere: what a kind makes of its numbers is a sum of lobes, each of
+/// which the contract of `bsdf` tests from all sides.
+#[test]
+fn directions_follow_their_density() {
+    let mut random = Random::new(816);
+    let all = examples();
+    let (mut tested, count) = (0, all.len());
+    for (name, table, id) in all {
+        let found = (0..20).find_map(|_| {
+            let (surface, tangents) = place(&mut random);
+            let wo = random.unit_vector();
+            let view = View { wo, tangents: Some(&tangents), pick: random.f32(), ..View::of(&surface) };
+            let shade = table.shade(id, &view);
+            let local = shade.frame.to_local(wo);
+            // Lobes thinner than the test's cells are left to those tests, and so is what gives nothing from here.
+            let peak = (0..500).filter_map(|_| shade.bsdf.sample(local, random.vec2(), random.f32()));
+            let peak = peak.filter(|s| s.scatter != Scatter::Specular).map(|s| s.pdf).fold(0.0, f32::max);
+            (peak > 0.0 && peak < 50.0).then_some((shade.bsdf, local))
+        });
+        let Some((bsdf, local)) = found else { continue };
+        let checked = crate::bsdf::contract::follows_its_density(&bsdf, local, 1_000_000, 1e-3 / count as f64);
+        assert!(checked.is_ok(), "{name}, {local}: {checked:?}");
+        tested += 1;
+    }
+    assert!(tested * 2 > count, "{tested} of {count}");
 }
 
 #[test]
@@ -218,9 +246,7 @@ fn textures_beyond_their_range_are_cut_off() {
                 let view = View { wo, tangents: Some(&tangents), ..View::of(&surface) };
                 let shade = table.shade(id, &view);
                 let energy = energy(&json, &shade, shade.frame.to_local(wo), &mut random);
-                // Very stretched and rough at once, compensation is only near.
-                let most = if json.contains("anisotropy") { 1.25 } else { 1.1 };
-                assert!(energy.max_channel() <= most, "{json}: {energy:?}");
+                assert!(energy.max_channel() <= 1.1, "{json}: {energy:?}");
                 assert!((0.0..=1.0).contains(&shade.opacity), "{json}");
             }
         }
