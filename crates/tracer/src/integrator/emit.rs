@@ -1,6 +1,6 @@
 //! What an integrator may do at a vertex.
 
-use super::{Cone, Trail};
+use super::{Clamping, Cone, Trail, Way};
 use crate::medium::Interiors;
 use crate::sampler::Sampler;
 use juggler_math::{Ray, Rgb};
@@ -56,8 +56,10 @@ pub(crate) struct ShadowQueue {
 /// What a shadow ray adds when it comes through.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gain {
-    /// To which sample.
-    pub slot: u32,
+    /// To which sample: passes are short enough.
+    pub slot: u16,
+    /// Which limit holds, where there are some.
+    pub way: Way,
     /// How much.
     pub radiance: Rgb,
     /// The solids that the ray starts in.
@@ -69,6 +71,8 @@ pub(crate) struct Gain {
 pub(crate) struct Harvest {
     /// What each sample has gathered.
     pub radiance: Vec<Rgb>,
+    /// What limits that.
+    pub clamping: Option<Clamping>,
     /// One queue a light, whose rays run much the same way, and at the end one for rays that do not.
     pub shadows: Vec<ShadowQueue>,
     /// Shadow rays that wait, in all queues.
@@ -126,7 +130,12 @@ impl<'a> Emit<'a> {
     /// Adds to the sample, times the path's weight.
     #[inline]
     pub fn add(&mut self, radiance: Rgb) {
-        self.harvest.radiance[self.path.slot as usize] += radiance * self.weight;
+        let slot = self.path.slot as usize;
+        let mut radiance = radiance * self.weight;
+        if let Some(clamping) = &mut self.harvest.clamping {
+            radiance = clamping.limit(slot, Way::of(self.path.depth.saturating_add(1)), radiance);
+        }
+        self.harvest.radiance[slot] += radiance;
     }
 
     /// Adds, times the path's weight, what of `radiance` comes through along `ray` from light number `light`.
@@ -157,7 +166,8 @@ impl<'a> Emit<'a> {
         self.harvest.pending += 1;
         let queue = &mut self.harvest.shadows[queue];
         queue.rays.push(ray);
-        queue.gains.push(Gain { slot: self.path.slot, radiance, inside });
+        let way = Way::of(self.path.depth.saturating_add(2));
+        queue.gains.push(Gain { slot: self.path.slot as u16, way, radiance, inside });
     }
 
     /// Follows `ray`, the `child`-th that leaves this vertex; what it finds counts `weight` times as much.

@@ -7,11 +7,8 @@ use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
 use crate::medium::InteriorId;
 use crate::surface::Surface;
-use crate::world::{Receiver, Vertex, World};
+use crate::world::{MAX_PASSED, Receiver, Vertex, World};
 use juggler_math::{Ray, Rgb, Vec3};
-
-/// How often a path may pass holes in a row.
-const MAX_PASSED: u16 = 1000;
 
 /// A vertex as seen by the one who looks.
 pub struct Seen<'a> {
