@@ -14,16 +14,16 @@ fn panes(count: u16, floor: &str, lights: &[&str]) -> World {
     world(&objects, lights, Rgb::BLACK)
 }
 
-fn seen(world: &World, eye: Vec3, integrator: AnyIntegrator) -> Rgb {
-    pixels(world, &look(eye, Vec3::ZERO, "5", PIXEL), &integrator, PIXEL, 4)[0]
+fn seen(world: &World, eye: Vec3, integrator: &AnyIntegrator) -> Rgb {
+    pixels(world, &look(eye, Vec3::ZERO, "5", PIXEL), integrator, PIXEL, 4)[0]
 }
 
 #[test]
 fn shadow_rays_pass_as_many_holes_as_paths() {
     let lamp = r#"{"point": {"position": [0, 20, 0], "intensity": 400}}"#;
     let (below, above) = (Vec3::new(0.5, 0.9, 0.0), Vec3::new(0.5, 20.0, 0.0));
-    let lit = |count| seen(&panes(count, r#"{"diffuse": {}}"#, &[lamp]), below, Direct::default().into());
-    let followed = |count| seen(&panes(count, r#"{"emissive": {}}"#, &[]), above, Path::default().into());
+    let lit = |count| seen(&panes(count, r#"{"diffuse": {}}"#, &[lamp]), below, &Direct::default().into());
+    let followed = |count| seen(&panes(count, r#"{"emissive": {}}"#, &[]), above, &Path::default().into());
     for (name, look) in [("asked", &lit as &dyn Fn(u16) -> Rgb), ("followed", &followed)] {
         let open = look(0);
         assert!(open.g > 0.01, "{name}: {open:?}");
