@@ -1,5 +1,6 @@
 //! Numbers as people read them.
 
+use juggler::tracer::film::Summary;
 use std::time::Duration;
 
 /// As the Juggler's ancestors printed it: `1 hour, 2 minutes, 1 second, 5 milliseconds`, without zeros in front.
@@ -41,6 +42,16 @@ pub fn bytes(bytes: u64) -> String {
     match units.into_iter().find(|(scale, _)| bytes >= *scale) {
         Some((scale, unit)) => format!("{:.1} {unit}", bytes as f64 / scale as f64),
         None => counted(bytes.into(), "byte"),
+    }
+}
+
+/// What clamping took away, in words.
+pub fn clamping(film: &Summary) -> String {
+    let percent = film.clamped_share() * 100.0;
+    match film.clamped {
+        0.0 => "clamping removed no light".into(),
+        _ if percent < 0.1 => "clamping removed less than 0.1 % of the light".into(),
+        _ => format!("clamping removed {percent:.1} % of the light"),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `--stats`: one JSON object about a render, with the keys that other people's scripts read.
 
+use juggler::tracer::film::Summary;
 use juggler::tracer::render::Rays;
 use juggler::{Outcome, Picture};
 use serde::Serialize;
@@ -60,6 +61,24 @@ struct Geometry {
 struct Film<'s> {
     mean: [f64; 3],
     hash: &'s str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clamped: Option<Clamped>,
+}
+
+/// What clamping took away, where it is on.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Clamped {
+    /// Off a pixel, the mean of all pixels and channels.
+    mean: f64,
+    /// Of all the light.
+    share: f64,
+}
+
+impl Clamped {
+    /// Of a picture that is clamped.
+    pub fn of(film: &Summary) -> Self {
+        Self { mean: film.clamped, share: film.clamped_share() }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -103,7 +122,7 @@ impl<'s> Stats<'s> {
                 geometry_bytes: geometry.geometry_bytes,
                 bvh_bytes: geometry.bvh_bytes,
             },
-            film: Film { mean: film.mean, hash: &film.hash },
+            film: Film { mean: film.mean, hash: &film.hash, clamped: picture.is_clamped().then(|| Clamped::of(film)) },
             fingerprint: picture.fingerprint().hash(),
         }
     }

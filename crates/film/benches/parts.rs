@@ -31,7 +31,7 @@ fn film(name: &str, blocks: u32) -> Result<Vec<Tile>, Box<dyn Error>> {
             let place = |pixel: u32| (y + pixel / width) * SIZE[0] + x + pixel % width;
             let pixels = (0..tile.pixels().area() as u32).filter_map(|pixel| image.pixels().get(place(pixel) as usize));
             let sum = |mean: &Rgb| (*mean * BLOCK as f32).to_array().map(f64::from);
-            let sums = pixels.map(|mean| Sum { total: sum(mean), spread: [0.0; 3] }).collect();
+            let sums = pixels.map(|mean| Sum { total: sum(mean), ..Sum::default() }).collect();
             tile.add(Run { samples: block * BLOCK..(block + 1) * BLOCK, sums })?;
         }
     }
@@ -48,6 +48,7 @@ fn description(samples: u32, share: Share) -> Description {
         region: REGION,
         samples,
         stop: Stop::Samples,
+        clamped: false,
         share,
         finished: true,
         fingerprint: Default::default(),
@@ -93,7 +94,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let raw: usize = tiles.iter().flat_map(Tile::runs).map(|run| run.sums.len() * 36).sum();
         let whole = description(samples, Share::whole(samples));
         let pack = speed(raw, || {
-            black_box(tiles.iter().map(Chunk::encode).collect::<Vec<_>>());
+            black_box(tiles.iter().map(|tile| Chunk::encode(tile, false)).collect::<Vec<_>>());
             Ok(())
         })?;
         let numbered = || (0..).zip(tiles.iter().cloned());

@@ -19,6 +19,7 @@ pub fn description(region: Rect, samples: u32) -> Description {
         region,
         samples,
         stop: Stop::Samples,
+        clamped: false,
         share: Share::whole(samples),
         finished: true,
         fingerprint: [("scene", "5ce4e"), ("seed", "7")].map(|(k, v)| (k.to_owned(), v.to_owned())).into(),
@@ -35,6 +36,15 @@ fn sample(x: u32, y: u32, index: u32) -> Rgb {
 
 /// The samples of a tile in this range, as the engine makes them.
 pub fn tile(pixels: Rect, samples: Range<u32>) -> Tile {
+    exposed(pixels, samples, |_| None)
+}
+
+/// The same of a picture whose samples lost as much as they have of green.
+pub fn clamped_tile(pixels: Rect, samples: Range<u32>) -> Tile {
+    exposed(pixels, samples, |sample| Some(sample.g))
+}
+
+fn exposed(pixels: Rect, samples: Range<u32>, lost: impl Fn(&Rgb) -> Option<f32>) -> Tile {
     let mut tile = Tile::new(pixels);
     let mut parts: Vec<Run> = runs(samples.clone()).into_iter().map(|samples| Run { samples, sums: vec![] }).collect();
     for pixel in 0..pixels.area() as u32 {
@@ -42,7 +52,7 @@ pub fn tile(pixels: Rect, samples: Range<u32>) -> Tile {
         let mut accumulator = Accumulator::default();
         accumulator.begin(samples.start, None);
         let radiance: Vec<Rgb> = samples.clone().map(|index| sample(x, y, index)).collect();
-        accumulator.add(&radiance);
+        accumulator.add_clamped(&radiance, &radiance.iter().filter_map(&lost).collect::<Vec<_>>());
         let sums: Vec<Sum> = accumulator.sums().collect();
         parts.iter_mut().zip(sums).for_each(|(run, sum)| run.sums.push(sum));
     }
@@ -54,6 +64,12 @@ pub fn tile(pixels: Rect, samples: Range<u32>) -> Tile {
 pub fn tiles(region: Rect, samples: Range<u32>) -> Vec<(u64, Tile)> {
     let layout = Layout::new(region);
     (0..layout.tiles()).map(|number| (number, tile(layout.tile(number).unwrap(), samples.clone()))).collect()
+}
+
+/// All tiles of a region with these samples, that lost some light.
+pub fn clamped_tiles(region: Rect, samples: Range<u32>) -> Vec<(u64, Tile)> {
+    let layout = Layout::new(region);
+    (0..layout.tiles()).map(|number| (number, clamped_tile(layout.tile(number).unwrap(), samples.clone()))).collect()
 }
 
 /// A place in a fresh folder.

@@ -47,7 +47,13 @@ impl Picture {
             digest.update(band);
             rows(band)
         })?;
+        digest.clamp(film.clamped());
         Ok(digest.finish())
+    }
+
+    /// Whether contributions that are too bright are dimmed.
+    pub fn is_clamped(&self) -> bool {
+        self.job().integrator.clamp().is_some()
     }
 
     /// Writes a film as a picture.
@@ -78,6 +84,7 @@ impl Picture {
             region: self.region(),
             samples: self.samples(),
             stop: self.end(),
+            clamped: self.is_clamped(),
             share,
             finished: false,
             fingerprint: self.fingerprint().parts().clone(),

@@ -7,6 +7,7 @@ use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, Scene, SceneError};
 use juggler_tracer::camera::{AnyCamera, Perspective, Shot};
 use juggler_tracer::film::{Digest, Filter, Rect, Summary};
+use juggler_tracer::integrator::Clamp;
 use juggler_tracer::render::{self, BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
 use juggler_tracer::world::{SimdLevel, World};
 use std::path::Path;
@@ -208,12 +209,18 @@ impl Picture {
     pub fn header(&self, options: Options) -> Header {
         let [width, height] = self.size();
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
-        let metadata = vec![
+        let mut metadata = vec![
             text("Software", SOFTWARE),
             text("Fingerprint", &self.fingerprint.hash()),
             text("Seed", &self.compiled.settings.seed.to_string()),
             text("Samples", &self.samples().to_string()),
         ];
+        if let Some(Clamp { direct, indirect }) = self.compiled.settings.integrator.clamp() {
+            let limits =
+                [("direct", direct), ("indirect", indirect)].into_iter().filter(|(_, limit)| limit.is_finite());
+            let limits: Vec<String> = limits.map(|(light, limit)| format!("{light} light at {limit}")).collect();
+            metadata.push(text("Clamping", &limits.join(", ")));
+        }
         Header { tone: self.tone.clone(), options, metadata, ..Header::new(width, height) }
     }
 
@@ -247,7 +254,10 @@ impl Picture {
             digest.update(&band);
             rows(&band)
         })
-        .map(|()| digest.finish())
+        .map(|clamped| {
+            digest.clamp(clamped);
+            digest.finish()
+        })
     }
 
     /// Renders into a file, or whatever else the writer writes to.

@@ -2,9 +2,10 @@
 
 use crate::console;
 use crate::failure::Failure;
-use crate::format::{bytes, counted, duration};
+use crate::format::{bytes, clamping, counted, duration};
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::{Encoding, PART_ENDING};
+use crate::stats::Clamped;
 use clap::Args;
 use juggler::film::{self, Description, Wanted};
 use juggler::imaging::{self, Header, Tone};
@@ -99,6 +100,9 @@ impl Merge {
         }
         let [width, height] = [picture.region.width, picture.region.height];
         let what = match made {
+            Made::Picture(film) if picture.clamped => {
+                format!("{}, {}", counted(picture.samples.into(), "sample"), clamping(film))
+            }
             Made::Picture(_) => counted(picture.samples.into(), "sample"),
             Made::Part(length) if picture.finished => format!("whole, {}", bytes(*length)),
             Made::Part(length) => format!("not all of it, {}", bytes(*length)),
@@ -115,7 +119,10 @@ impl Merge {
     /// The keys have the meaning that they have for a render.
     fn to_json(&self, picture: &Description, made: &Made, seconds: f64) -> String {
         let film = match made {
-            Made::Picture(Summary { hash, mean }) => json!({"mean": mean, "hash": hash}),
+            Made::Picture(film) if picture.clamped => {
+                json!({"mean": film.mean, "hash": film.hash, "clamped": Clamped::of(film)})
+            }
+            Made::Picture(Summary { hash, mean, .. }) => json!({"mean": mean, "hash": hash}),
             Made::Part(_) => serde_json::Value::Null,
         };
         json!({

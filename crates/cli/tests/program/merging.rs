@@ -20,6 +20,7 @@ fn description() -> Description {
         region: Rect { x: 0, y: 0, width: 70, height: 40 },
         samples: SAMPLES,
         stop: Stop::Samples,
+        clamped: false,
         share: Share::whole(SAMPLES),
         finished: true,
         fingerprint: [("seed".to_owned(), "7".to_owned())].into(),

@@ -1,6 +1,6 @@
 //! `--stats` and `--progress json`: keys that other people's scripts read.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, SCENE};
 use serde_json::Value;
 use std::fs;
 
@@ -75,4 +75,39 @@ fn progress_is_a_stream_of_events() {
     assert_eq!(keys(last), ["event", "output", "seconds", "rays", "hash"]);
     assert_eq!(folder.good("render ball.json").stdout.lines().count(), 1);
     assert_eq!(folder.good("render ball.json --quiet").stdout, "");
+}
+
+#[test]
+fn what_clamping_takes_is_always_told() {
+    let folder = Folder::new();
+    let integrator = r#""integrator": {"path": {"max_depth": 5, "clamp_direct": 0.4, "clamp_indirect": 0.02}}"#;
+    let scene = SCENE.replace(r#""samples": 2"#, &format!(r#""samples": 2, {integrator}"#));
+    fs::write(folder.path("clamped.json"), scene).unwrap();
+    let told = |flags: &str| {
+        let run = folder.run(&format!("{flags} --stats s.json"));
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let stats: Value = serde_json::from_str(&fs::read_to_string(folder.path("s.json")).unwrap()).unwrap();
+        assert_eq!(keys(&stats["film"]["clamped"]), ["mean", "share"]);
+        assert!(run.stdout.contains("clamping removed ") && run.stdout.contains(" % of the light"), "{}", run.stdout);
+        stats["film"].clone()
+    };
+    let render = "render clamped.json --size 40x25 --samples 40";
+    let whole = told(&format!("{render} --threads 1 -o whole.png"));
+    let share = whole["clamped"]["share"].as_f64().unwrap();
+    assert!(share > 0.001 && share < 0.9, "{share}");
+    for threads in [2, 4] {
+        assert_eq!(told(&format!("{render} --threads {threads} -o whole.png")), whole);
+    }
+    for shard in 0..2 {
+        told(&format!("{render} --shard {shard}/2 -o {shard}.jfilm"));
+    }
+    assert_eq!(told("merge 0.jfilm 1.jfilm -o merged.png"), whole);
+    // Fewer samples first, then gone on with.
+    told("render clamped.json --size 40x25 --samples 7 -o a.jfilm --checkpoint a.jfilm");
+    assert_eq!(told(&format!("{render} -o a.jfilm --checkpoint a.jfilm")), whole);
+    assert!(folder.good("info whole.png").stdout.contains("direct light at 0.4, indirect light at 0.02"));
+    // Frames of a film say it too.
+    let film = folder.run("render clamped.json --frames 0..2 -o film.gif");
+    assert_eq!(film.status, 0, "{}", film.stderr);
+    assert_eq!(film.stderr.matches("clamping removed ").count(), 2, "{}", film.stderr);
 }

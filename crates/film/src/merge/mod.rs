@@ -56,6 +56,7 @@ impl Merge {
         self.bands(|_, tiles| {
             for tiles in tiles.chunks((layout.columns() as usize).max(1)) {
                 let pixels = row_of_tiles(&layout, tiles);
+                digest.clamp(tiles.iter().map(Tile::clamped).sum());
                 digest.update(&pixels);
                 rows(&pixels)?;
             }
@@ -69,7 +70,7 @@ impl Merge {
         let mut writer = PartWriter::create(path, &self.description)?;
         self.bands(|first, tiles| {
             for (number, tile) in (first..).zip(tiles).filter(|(_, tile)| !tile.runs().is_empty()) {
-                writer.add(number, &Chunk::encode(tile))?;
+                writer.add(number, &Chunk::encode(tile, self.description.clamped))?;
             }
             Ok::<(), PartError>(())
         })?;

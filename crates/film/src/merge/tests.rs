@@ -3,7 +3,7 @@
 use super::*;
 use crate::part::{Share, Stop, write};
 use crate::share::{Work, whole_tiles};
-use crate::testing::{description, tile, tiles};
+use crate::testing::{clamped_tiles, description, tile, tiles};
 use juggler_math::testing::Random;
 use juggler_tracer::film::Rect;
 use std::path::PathBuf;
@@ -92,6 +92,31 @@ fn shares_in_any_order_are_the_whole() {
         let mut files: Vec<PathBuf> = (0..count).map(|index| folder.share(index, count)).collect();
         shuffle(&mut files, &mut random);
         assert_eq!(merged(&files), expected, "{count} shares");
+    }
+}
+
+#[test]
+fn what_clamping_took_is_summed_over_all_parts() {
+    let lost: juggler_tracer::film::Clamped =
+        clamped_tiles(REGION, 0..SAMPLES).iter().map(|(_, tile)| tile.clamped()).sum();
+    let expected = lost.total() / REGION.area() as f64;
+    assert!(expected > 0.0);
+    for cut in [16, 48] {
+        let folder = Folder::new();
+        let part = |name: &str, samples: std::ops::Range<u32>| {
+            let share = Share { samples: samples.clone(), ..Share::whole(SAMPLES) };
+            let path = folder.path(name);
+            let description = Description { share, clamped: true, ..description(REGION, SAMPLES) };
+            write(&path, &description, clamped_tiles(REGION, samples)).unwrap();
+            path
+        };
+        let mut files = vec![part("b.jfilm", cut..SAMPLES), part("a.jfilm", 0..cut)];
+        assert_eq!(merged(&files).1.clamped, expected);
+        let joined = folder.path("joined.jfilm");
+        Merge::open(&files, Wanted::Part).unwrap().write(&joined).unwrap();
+        assert_eq!(merged(&[joined]).1.clamped, expected);
+        files.push(folder.share(0, 1));
+        assert!(folder.complaints(&files).contains("clamped"), "{}", folder.complaints(&files));
     }
 }
 

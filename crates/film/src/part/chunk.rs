@@ -1,5 +1,6 @@
 //! The bytes of one tile: its runs, each with its samples' range and its packed sums.
 
+use super::Description;
 use super::pack::{pack, unpack};
 use juggler_tracer::film::{Rect, Run, Tile};
 
@@ -13,16 +14,18 @@ const RUN: usize = 12;
 pub struct Chunk {
     pub(super) pixels: Rect,
     pub(super) runs: usize,
+    /// Whether it says what clamping took off the pixels.
+    pub(super) clamped: bool,
     pub(super) bytes: Vec<u8>,
     pub(super) hash: [u8; 32],
 }
 
 impl Chunk {
-    /// Packs a tile.
-    pub fn encode(tile: &Tile) -> Self {
+    /// Packs a tile of a picture that is clamped or not.
+    pub fn encode(tile: &Tile, clamped: bool) -> Self {
         let mut bytes = Vec::new();
         for run in tile.runs() {
-            let packed = pack(&run.sums);
+            let packed = pack(&run.sums, clamped);
             bytes.extend_from_slice(&run.samples.start.to_le_bytes());
             bytes.extend_from_slice(&run.samples.end.to_le_bytes());
             // A tile's sums are a few kilobytes.
@@ -30,12 +33,13 @@ impl Chunk {
             bytes.extend_from_slice(&packed);
         }
         let hash = *blake3::hash(&bytes).as_bytes();
-        Self { pixels: tile.pixels(), runs: tile.runs().len(), bytes, hash }
+        Self { pixels: tile.pixels(), runs: tile.runs().len(), clamped, bytes, hash }
     }
 }
 
-/// The tile that a chunk's bytes describe, for a picture of `samples` samples; or what is wrong with them.
-pub(super) fn decode(mut bytes: &[u8], pixels: Rect, samples: u32) -> Result<Tile, String> {
+/// The tile that a chunk's bytes describe, for this picture; or what is wrong with them.
+pub(super) fn decode(mut bytes: &[u8], pixels: Rect, picture: &Description) -> Result<Tile, String> {
+    let Description { samples, clamped, .. } = *picture;
     let mut tile = Tile::new(pixels);
     let mut runs = 0;
     while !bytes.is_empty() {
@@ -51,7 +55,7 @@ pub(super) fn decode(mut bytes: &[u8], pixels: Rect, samples: u32) -> Result<Til
         if range.end > samples {
             return Err(format!("it has samples up to {}, its picture {samples}", range.end));
         }
-        let sums = unpack(packed, pixels.area() as usize).ok_or("packed sums cannot be unpacked")?;
+        let sums = unpack(packed, pixels.area() as usize, clamped).ok_or("packed sums cannot be unpacked")?;
         tile.add(Run { samples: range, sums }).map_err(|error| error.to_string())?;
         bytes = rest;
     }

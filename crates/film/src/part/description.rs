@@ -86,6 +86,9 @@ pub struct Description {
     pub samples: u32,
     /// When the picture is finished.
     pub stop: Stop,
+    /// Whether what is too bright is dimmed; then tiles say what that took away.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub clamped: bool,
     /// Which part of the picture this was to become.
     pub share: Share,
     /// Whether it became that: the picture's rule to stop holds for every tile of the share.
@@ -128,6 +131,7 @@ impl Description {
         compare("size", size(self.size), size(other.size));
         compare("region", rect(&self.region), rect(&other.region));
         compare("samples", self.samples.to_string(), other.samples.to_string());
+        compare("clamped", self.clamped.to_string(), other.clamped.to_string());
         compare("stop", self.stop.to_string(), other.stop.to_string());
         let names =
             self.fingerprint.keys().chain(other.fingerprint.keys().filter(|k| !self.fingerprint.contains_key(*k)));

@@ -103,9 +103,17 @@ pub(super) struct Layer {
     pub channels: Vec<String>,
 }
 
-/// The layers of this version.
-pub(super) fn layers() -> Vec<Layer> {
-    vec![Layer { name: "radiance".into(), channels: ["R", "G", "B"].map(String::from).into() }]
+/// The layers of this version, for a picture that is clamped or not.
+pub(super) fn layers(clamped: bool) -> Vec<Layer> {
+    let layer = |name: &str, channels: &[&str]| Layer {
+        name: name.into(),
+        channels: channels.iter().map(ToString::to_string).collect(),
+    };
+    let mut layers = vec![layer("radiance", &["R", "G", "B"])];
+    if clamped {
+        layers.push(layer("clamped", &["mean"]));
+    }
+    layers
 }
 
 /// `radiance (R, G, B)`.

@@ -13,34 +13,54 @@ use juggler_tracer::film::Sum;
 const CHANNELS: usize = 3;
 /// Bits of a total.
 const TOTAL: usize = 64;
-/// Bits of a spread.
-const SPREAD: usize = 32;
+/// Bits of a spread, and of what clamping took.
+const SINGLE: usize = 32;
 
-/// The packed sums of some pixels.
-pub(super) fn pack(sums: &[Sum]) -> Vec<u8> {
+/// The packed sums of some pixels, with what clamping took off them or without.
+pub(super) fn pack(sums: &[Sum], clamped: bool) -> Vec<u8> {
     let plane = plane(sums.len());
-    let mut planes = vec![0; plane * (TOTAL + SPREAD)];
-    let (totals, spreads) = planes.split_at_mut(plane * TOTAL);
+    let mut planes = vec![0; plane * bits(clamped)];
+    let (totals, rest) = planes.split_at_mut(plane * TOTAL);
+    let (spreads, taken) = rest.split_at_mut(plane * SINGLE);
     to_planes(differences(sums, TOTAL, |sum, channel| sum.total[channel].to_bits()), totals);
-    to_planes(differences(sums, SPREAD, |sum, channel| sum.spread[channel].to_bits().into()), spreads);
+    to_planes(differences(sums, SINGLE, |sum, channel| sum.spread[channel].to_bits().into()), spreads);
+    if clamped {
+        // Of one channel only: the others' places stay empty.
+        let first = |sum: &Sum, channel| if channel == 0 { sum.clamped.to_bits().into() } else { 0 };
+        to_planes(differences(sums, SINGLE, first), taken);
+    }
     lz4_flex::block::compress(&planes)
 }
 
-/// The sums of so many pixels; `None` when the bytes hold something else.
-pub(super) fn unpack(packed: &[u8], pixels: usize) -> Option<Vec<Sum>> {
+/// Bits of a channel of a pixel.
+fn bits(clamped: bool) -> usize {
+    TOTAL + if clamped { 2 * SINGLE } else { SINGLE }
+}
+
+/// The sums of so many pixels, packed with what clamping took off them or without; `None` when the bytes hold something
+/// else.
+pub(super) fn unpack(packed: &[u8], pixels: usize, clamped: bool) -> Option<Vec<Sum>> {
     let plane = plane(pixels);
-    let mut planes = vec![0; plane * (TOTAL + SPREAD)];
+    let mut planes = vec![0; plane * bits(clamped)];
     let length = lz4_flex::block::decompress_into(packed, &mut planes).ok()?;
     if length != planes.len() {
         return None;
     }
-    let (totals, spreads) = planes.split_at(plane * TOTAL);
+    let (totals, rest) = planes.split_at(plane * TOTAL);
+    let (spreads, taken) = rest.split_at(plane * SINGLE);
     let mut sums = vec![Sum::default(); pixels];
     restore(&mut sums, &from_planes(totals, plane), |sum, channel, bits| sum.total[channel] = f64::from_bits(bits));
     // Only 32 planes were there: what the additions carry beyond is cut off.
     restore(&mut sums, &from_planes(spreads, plane), |sum, channel, bits| {
         sum.spread[channel] = f32::from_bits(bits as u32);
     });
+    if clamped {
+        restore(&mut sums, &from_planes(taken, plane), |sum, channel, bits| {
+            if channel == 0 {
+                sum.clamped = f32::from_bits(bits as u32);
+            }
+        });
+    }
     Some(sums)
 }
 

@@ -116,7 +116,7 @@ impl Reader<'_> {
         if *blake3::hash(&self.bytes).as_bytes() != entry.hash {
             return Err(self.damaged(format!("the bytes of tile {number} are not those that were written")));
         }
-        decode(&self.bytes, pixels, description.samples).map_err(|what| self.damaged(format!("tile {number}: {what}")))
+        decode(&self.bytes, pixels, description).map_err(|what| self.damaged(format!("tile {number}: {what}")))
     }
 
     fn damaged(&self, what: String) -> PartError {
@@ -233,7 +233,7 @@ impl Source {
     fn description(&self, head: &[u8]) -> Result<Description, PartError> {
         let Head { layers: found, part } =
             serde_json::from_slice(head).map_err(|error| self.damaged(format!("its head cannot be read: {error}")))?;
-        let known = layers();
+        let known = layers(part.clamped);
         if found != known {
             let (layers, known) = (in_words(&found), in_words(&known));
             return Err(PartError::Layers { file: self.name.clone(), layers, known });

@@ -16,6 +16,7 @@ pub struct PartWriter {
     file: AtomicFile,
     out: BufWriter<File>,
     layout: Layout,
+    clamped: bool,
     head: Vec<u8>,
     entries: Vec<Entry>,
     length: u64,
@@ -32,13 +33,17 @@ impl PartWriter {
         // The prelude is written last, when its numbers are known.
         out.write_all(&[0; PRELUDE]).and_then(|()| out.write_all(&head)).map_err(failed)?;
         let length = (PRELUDE + head.len()) as u64;
-        Ok(Self { name, file, out, layout: description.layout(), head, entries: Vec::new(), length })
+        let Description { clamped, .. } = *description;
+        Ok(Self { name, file, out, layout: description.layout(), clamped, head, entries: Vec::new(), length })
     }
 
     /// Adds a tile by its number in the region's layout. Each comes once, in any order.
     pub fn add(&mut self, number: u64, chunk: &Chunk) -> Result<(), PartError> {
         if self.layout.tile(number) != Some(chunk.pixels) {
             return Err(self.unfit(format!("tile {number} has other pixels than the region's tile of that number")));
+        }
+        if chunk.clamped != self.clamped {
+            return Err(self.unfit(format!("tile {number} and its picture do not agree on whether it is clamped")));
         }
         let length = u32::try_from(chunk.bytes.len()).ok().filter(|_| chunk.runs <= MAX_RUNS);
         let Some(length) = length else {
@@ -98,7 +103,7 @@ fn head(name: &str, description: &Description) -> Result<Vec<u8>, PartError> {
     if let Some(fault) = description.fault() {
         return Err(unfit(fault.to_owned()));
     }
-    let head = Head { layers: layers(), part: description.clone() };
+    let head = Head { layers: layers(description.clamped), part: description.clone() };
     let mut bytes = serde_json::to_vec_pretty(&head).map_err(|error| unfit(error.to_string()))?;
     bytes.push(b'\n');
     if bytes.len() > MAX_HEAD as usize {
@@ -116,7 +121,7 @@ pub fn write(
 ) -> Result<u64, PartError> {
     let mut writer = PartWriter::create(path, description)?;
     for (number, tile) in tiles {
-        writer.add(number, &Chunk::encode(&tile))?;
+        writer.add(number, &Chunk::encode(&tile, description.clamped))?;
     }
     writer.finish()
 }

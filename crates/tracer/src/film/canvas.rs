@@ -1,7 +1,7 @@
 //! A film that stays in memory while it is exposed, and can be read meanwhile.
 
 use super::tile::Tile;
-use super::{Layout, Run, Sum, TILE, TileError};
+use super::{Clamped, Layout, Run, Sum, TILE, TileError};
 use juggler_math::Rgb;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -115,6 +115,11 @@ impl Film {
     /// How many samples each tile has, in the order of their numbers.
     pub fn counts(&self) -> Vec<u32> {
         (0..self.cells.len()).map(|place| self.tile(place).map_or(0, |tile| tile.count())).collect()
+    }
+
+    /// What clamping took off the finished pixels.
+    pub fn clamped(&self) -> Clamped {
+        (0..self.cells.len()).filter_map(|place| self.tile(place)).map(|tile| tile.clamped()).sum()
     }
 
     /// Hands the finished pixels to `rows`, whole rows from top to bottom, a band at a time. Tiles that are not held

@@ -1,5 +1,6 @@
 //! A hash and a mean of the film's linear pixels, taken row by row.
 
+use super::Clamped;
 use juggler_math::Rgb;
 
 /// Pixels that are hashed at once: enough for the hash to work on several parts of them side by side.
@@ -11,6 +12,7 @@ pub struct Digest {
     hasher: blake3::Hasher,
     sum: [f64; 3],
     pixels: u64,
+    clamped: Clamped,
 }
 
 /// What a [`Digest`] comes to.
@@ -20,6 +22,17 @@ pub struct Summary {
     pub hash: String,
     /// Mean of the pixels.
     pub mean: [f64; 3],
+    /// Mean of what clamping took off the pixels, over all channels.
+    pub clamped: f64,
+}
+
+impl Summary {
+    /// Which share of the light clamping took away, from 0 to 1.
+    pub fn clamped_share(&self) -> f64 {
+        let [r, g, b] = self.mean;
+        let all = (r + g + b) / 3.0 + self.clamped;
+        if all > 0.0 { (self.clamped / all).clamp(0.0, 1.0) } else { 0.0 }
+    }
 }
 
 impl Digest {
@@ -28,7 +41,7 @@ impl Digest {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&width.to_le_bytes());
         hasher.update(&height.to_le_bytes());
-        Self { hasher, sum: [0.0; 3], pixels: 0 }
+        Self { hasher, sum: [0.0; 3], pixels: 0, clamped: Clamped::default() }
     }
 
     /// The next pixels.
@@ -48,10 +61,16 @@ impl Digest {
         self.pixels += pixels.len() as u64;
     }
 
+    /// What clamping took off pixels, in any order.
+    pub fn clamp(&mut self, clamped: Clamped) {
+        self.clamped.add_all(clamped);
+    }
+
     /// The result so far.
     pub fn finish(&self) -> Summary {
         let hash = self.hasher.finalize().to_hex().to_string();
-        Summary { hash, mean: self.sum.map(|sum| sum / self.pixels.max(1) as f64) }
+        let pixels = self.pixels.max(1) as f64;
+        Summary { hash, mean: self.sum.map(|sum| sum / pixels), clamped: self.clamped.total() / pixels }
     }
 }
 

@@ -6,6 +6,7 @@
 //! additions are the same ones, so the bits are too.
 
 mod canvas;
+mod clamped;
 mod digest;
 mod filter;
 mod layout;
@@ -15,6 +16,7 @@ mod tests;
 mod tile;
 
 pub use canvas::Film;
+pub use clamped::Clamped;
 pub use digest::{Digest, Summary};
 pub use filter::{AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent};
 pub use layout::{Layout, Rect, TILE};

@@ -21,18 +21,20 @@ pub struct Sum {
     /// Chan, Golub and LeVeque (1979) add them up, but those of deeper joins count less, by a quarter a level. Well
     /// spread samples make long runs differ less than short ones; it is the long ones that tell how good the mean is.
     pub spread: [f32; 3],
+    /// What clamping took off the samples: the sum of the means of their channels.
+    pub clamped: f32,
 }
 
 impl Sum {
     fn of_block(block: Rgb) -> Self {
-        Self { total: block.to_array().map(f64::from), spread: [0.0; 3] }
+        Self { total: block.to_array().map(f64::from), ..Self::default() }
     }
 
     /// With the run that follows; they have `blocks` blocks each.
     #[must_use]
     pub fn joined(&self, next: &Self, blocks: [u32; 2]) -> Self {
         let [a, b] = blocks.map(f64::from);
-        let mut sum = Self::default();
+        let mut sum = Self { clamped: self.clamped + next.clamped, ..Self::default() };
         for i in 0..3 {
             sum.total[i] = self.total[i] + next.total[i];
             let apart = next.total[i] / b.max(1.0) - self.total[i] / a.max(1.0);
@@ -72,6 +74,8 @@ pub(super) fn is_open(samples: &Range<u32>) -> bool {
 pub struct Accumulator {
     next: u32,
     block: Rgb,
+    /// What was taken off the block's samples.
+    clamped: f32,
     runs: ArrayVec<(u32, Sum), MAX_RUNS>,
 }
 
@@ -84,18 +88,31 @@ impl Accumulator {
             let [r, g, b] = sum.total.map(|total| total as f32);
             Rgb::new(r, g, b)
         });
+        self.clamped = open.map_or(0.0, |sum| sum.clamped);
         self.next = first;
         self.runs.clear();
     }
 
     /// Adds the next samples. One that is no finite number counts as black. Returns how many were not.
     #[inline]
-    pub fn add(&mut self, mut samples: &[Rgb]) -> u64 {
+    pub fn add(&mut self, samples: &[Rgb]) -> u64 {
+        self.add_clamped(samples, &[])
+    }
+
+    /// The same for samples off which clamping took `clamped` each; nothing where no sample is clamped.
+    #[inline]
+    pub fn add_clamped(&mut self, mut samples: &[Rgb], mut clamped: &[f32]) -> u64 {
         let mut lost = 0;
         while !samples.is_empty() {
             let room = (BLOCK - self.next % BLOCK) as usize;
             let (now, rest) = samples.split_at(room.min(samples.len()));
             lost += self.add_to_block(now);
+            let taken = clamped.split_off(..now.len().min(clamped.len())).unwrap_or_default();
+            self.clamped = now
+                .iter()
+                .zip(taken)
+                .filter(|(sample, _)| sample.is_finite())
+                .fold(self.clamped, |sum, (_, taken)| sum + taken);
             self.next = self.next.wrapping_add(now.len() as u32);
             if now.len() == room {
                 self.close();
@@ -118,8 +135,13 @@ impl Accumulator {
         lost.len() as u64
     }
 
+    fn block_sum(&self) -> Sum {
+        Sum { clamped: self.clamped, ..Sum::of_block(self.block) }
+    }
+
     fn close(&mut self) {
-        let mut sum = Sum::of_block(std::mem::take(&mut self.block));
+        let mut sum = self.block_sum();
+        (self.block, self.clamped) = (Rgb::BLACK, 0.0);
         let mut level = 0;
         let mut number = self.next.wrapping_sub(1) / BLOCK;
         while number & 1 == 1
@@ -137,7 +159,7 @@ impl Accumulator {
 
     /// The runs' sums in order, the open block's last.
     pub fn sums(&self) -> impl Iterator<Item = Sum> {
-        let open = (!self.next.is_multiple_of(BLOCK)).then(|| Sum::of_block(self.block));
+        let open = (!self.next.is_multiple_of(BLOCK)).then(|| self.block_sum());
         self.runs.iter().map(|(_, sum)| *sum).chain(open)
     }
 }

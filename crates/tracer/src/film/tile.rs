@@ -1,7 +1,7 @@
 //! A rectangle of pixels with the samples that are there so far.
 
 use super::sum::{Sum, is_open, joined_weight, level, weight};
-use super::{BLOCK, Rect};
+use super::{BLOCK, Clamped, Rect};
 use juggler_math::Rgb;
 use std::ops::Range;
 
@@ -163,6 +163,16 @@ impl Tile {
                 *total += more;
             }
             total
+        })
+    }
+
+    /// What clamping took off the finished pixels.
+    pub fn clamped(&self) -> Clamped {
+        let count = f64::from(self.count().max(1));
+        (0..self.pixels.area() as usize).fold(Clamped::default(), |mut clamped, pixel| {
+            let sums = self.runs.iter().filter_map(|run| run.sums.get(pixel));
+            clamped.add(sums.fold(0.0, |total, sum| total + f64::from(sum.clamped)) / count);
+            clamped
         })
     }
 

@@ -1,6 +1,6 @@
 //! What an integrator may do at a vertex.
 
-use super::{Cone, Trail};
+use super::{Clamping, Cone, Trail, Way};
 use crate::medium::Interiors;
 use crate::sampler::Sampler;
 use arrayvec::ArrayVec;
@@ -57,8 +57,10 @@ pub(crate) struct ShadowQueue {
 /// What a shadow ray adds when it comes through.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gain {
-    /// To which sample.
-    pub slot: u32,
+    /// To which sample: passes are short enough.
+    pub slot: u16,
+    /// Which limit holds, where there are some.
+    pub way: Way,
     /// How much.
     pub radiance: Rgb,
     /// The solids that the ray starts in.
@@ -80,6 +82,8 @@ pub(crate) struct Bent {
 pub(crate) struct Harvest {
     /// What each sample has gathered.
     pub radiance: Vec<Rgb>,
+    /// What limits that.
+    pub clamping: Option<Clamping>,
     /// One queue a light, whose rays run much the same way, and at the end one for rays that do not.
     pub shadows: Vec<ShadowQueue>,
     /// Ways around a corner to lights.
@@ -96,6 +100,15 @@ impl Harvest {
         self.radiance.clear();
         self.radiance.resize(slots, Rgb::BLACK);
         self.shadows.resize_with(lights.min(MAX_LIGHT_QUEUES) + 1, ShadowQueue::default);
+    }
+
+    /// Adds to a sample what limits leave of it.
+    #[inline]
+    pub fn add(&mut self, slot: usize, way: Way, mut radiance: Rgb) {
+        if let Some(clamping) = &mut self.clamping {
+            radiance = clamping.limit(slot, way, radiance);
+        }
+        self.radiance[slot] += radiance;
     }
 }
 
@@ -139,7 +152,8 @@ impl<'a> Emit<'a> {
     /// Adds to the sample, times the path's weight.
     #[inline]
     pub fn add(&mut self, radiance: Rgb) {
-        self.harvest.radiance[self.path.slot as usize] += radiance * self.weight;
+        let way = Way::of(self.path.depth.saturating_add(1));
+        self.harvest.add(self.path.slot as usize, way, radiance * self.weight);
     }
 
     /// Adds, times the path's weight, what of `radiance` comes through along `ray` from light number `light`.
@@ -179,7 +193,8 @@ impl<'a> Emit<'a> {
         self.harvest.pending += 1;
         let queue = &mut self.harvest.shadows[queue];
         queue.rays.push(ray);
-        queue.gains.push(Gain { slot: self.path.slot, radiance, inside });
+        let way = Way::of(self.path.depth.saturating_add(2));
+        queue.gains.push(Gain { slot: self.path.slot as u16, way, radiance, inside });
     }
 
     /// Follows `ray`, the `child`-th that leaves this vertex; what it finds counts `weight` times as much.

@@ -9,6 +9,7 @@ use juggler_math::Ray;
 
 mod albedo;
 mod ambient_occlusion;
+mod clamp;
 mod classic;
 mod cone;
 mod depth;
@@ -18,6 +19,8 @@ mod normals;
 mod path;
 mod trail;
 
+pub use clamp::Clamp;
+pub(crate) use clamp::{Clamping, Way};
 pub use cone::Cone;
 pub(crate) use emit::{Bent, Harvest, Queue};
 pub use emit::{Emit, PathState};
@@ -37,6 +40,10 @@ pub trait Integrator: Send + Sync {
     /// What its shadow rays keep.
     fn shadows(&self) -> Shadows {
         Shadows::Filtered
+    }
+    /// What contributions are limited to.
+    fn clamp(&self) -> Option<Clamp> {
+        None
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::wavefront::Engine;
 use super::{Control, Job, Work};
-use crate::film::Rect;
+use crate::film::{Clamped, Rect};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -50,15 +50,16 @@ impl Default for Schedule {
 pub struct Stopped;
 
 /// Renders `region` with all samples on the threads of the current rayon pool, and hands the finished rows
-/// to `rows` from top to bottom, a band of whole rows at a time: only one band is held in memory.
+/// to `rows` from top to bottom, a band of whole rows at a time: only one band is held in memory. Returns what clamping took
+/// off them.
 pub fn render<E: From<Stopped>>(
     job: &Job,
     region: Rect,
     schedule: Schedule,
     control: &Control,
     mut rows: impl FnMut(Vec<Rgb>) -> Result<(), E>,
-) -> Result<(), E> {
-    let engines = Mutex::new(Vec::new());
+) -> Result<Clamped, E> {
+    let (engines, clamped) = (Mutex::new(Vec::new()), Mutex::new(Clamped::default()));
     for band in bands(region, schedule.band_pixels) {
         let film = Mutex::new(vec![Rgb::BLACK; band.area() as usize]);
         let draw = |pixels: Rect| {
@@ -68,10 +69,11 @@ pub fn render<E: From<Stopped>>(
             let means = if job.samples == 1 {
                 engine.render_single(pixels, control)
             } else {
-                engine.render(&Work::first(pixels, job.samples), control).map(|tile| tile.means())
+                engine.render(&Work::first(pixels, job.samples), control).map(|tile| (tile.means(), tile.clamped()))
             };
-            if let Ok(means) = means {
+            if let Ok((means, taken)) = means {
                 pixels.copy(&means, &band, &mut lock(&film));
+                lock(&clamped).add_all(taken);
             }
             lock(&engines).push(engine);
         };
@@ -85,7 +87,7 @@ pub fn render<E: From<Stopped>>(
         }
         rows(film.into_inner().unwrap_or_else(PoisonError::into_inner))?;
     }
-    Ok(())
+    Ok(*lock(&clamped))
 }
 
 /// Bytes that [`render`] holds at once for bands of `pixels`: the finished ones, and the list of tiles.

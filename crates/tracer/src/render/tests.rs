@@ -16,7 +16,9 @@ use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
 mod blur;
+mod clamping;
 mod cones;
+mod holes;
 mod inside;
 
 pub fn read<T: DeserializeOwned>(json: &str) -> T {
@@ -246,7 +248,8 @@ fn a_picture_of_single_samples_is_the_means_of_its_tiles() {
         let job = Job { integrator, ..job(&busy, &camera, &classic, 1) };
         let (one, two) = (Control::default(), Control::default());
         let single = wavefront::Engine::new(&job).render_single(pixels, &one).unwrap();
-        assert_eq!(single, job.render(&Work::first(pixels, 1), &two).unwrap().means());
+        let tile = job.render(&Work::first(pixels, 1), &two).unwrap();
+        assert_eq!(single, (tile.means(), tile.clamped()));
         assert_eq!(one.rays(), two.rays());
         assert_eq!(one.rays().not_finite > 0, lost);
     }

@@ -8,14 +8,15 @@
 
 use super::expose::{Start, expose, start};
 use super::{Control, Job, Rays, Stopped, Work};
-use crate::film::{Accumulator, Rect, Run, Tile, runs};
-use crate::integrator::{Bent, Emit, Harvest, Queue};
+use crate::film::{Accumulator, Clamped, Rect, Run, Tile, runs};
+use crate::integrator::{Bent, Clamping, Emit, Harvest, Queue, Way};
 use crate::world::{Shadows, WorldHit};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
 
 /// Samples in flight at once.
 const PASS: u64 = 1024;
+const _: () = assert!(PASS <= 1 << u16::BITS, "shadow rays keep their sample's number in 16 bits");
 /// Rays of a segment, unless one slot alone has more.
 const SEGMENT: usize = 2048;
 /// Rays of one slot that are followed side by side.
@@ -46,7 +47,7 @@ impl<'j> Engine<'j> {
             measures: job.world.has_pictures() || job.integrator.fades_patterns(),
             hits: Vec::new(),
             through: Vec::new(),
-            harvest: Harvest::default(),
+            harvest: Harvest { clamping: job.integrator.clamp().map(Clamping::new), ..Harvest::default() },
             stack: Vec::new(),
             spare: Vec::new(),
             rays: Rays::default(),
@@ -56,23 +57,33 @@ impl<'j> Engine<'j> {
     /// Renders one piece of work.
     pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
         let mut film = Exposed::new(work);
-        self.passes(work, control, |radiance| film.add(radiance))?;
+        self.passes(work, control, |radiance, clamped| film.add(radiance, clamped))?;
         Ok(film.tile())
     }
 
-    /// The pixels of a picture of one sample each, row by row. They need no sums, only what a tile's means would be.
-    pub fn render_single(&mut self, pixels: Rect, control: &Control) -> Result<Vec<Rgb>, Stopped> {
+    /// The pixels of a picture of one sample each, row by row, and what clamping took off them. They need no sums, only
+    /// what a tile's means would be.
+    pub fn render_single(&mut self, pixels: Rect, control: &Control) -> Result<(Vec<Rgb>, Clamped), Stopped> {
         let mut means = Vec::with_capacity(pixels.area() as usize);
-        self.passes(&Work::first(pixels, 1), control, |radiance| {
+        let mut taken = Clamped::default();
+        self.passes(&Work::first(pixels, 1), control, |radiance, clamped| {
             let lost = radiance.iter().filter(|sample| !sample.is_finite()).count() as u64;
             means.extend(radiance.iter().map(|sample| if sample.is_finite() { *sample } else { Rgb::BLACK }));
+            let finite = radiance.iter().zip(clamped).filter(|(sample, _)| sample.is_finite());
+            finite.for_each(|(_, clamped)| taken.add(f64::from(*clamped)));
             lost
         })?;
-        Ok(means)
+        Ok((means, taken))
     }
 
-    /// Traces all samples and hands them to `take` in order, which says how many were no finite numbers.
-    fn passes(&mut self, work: &Work, control: &Control, mut take: impl FnMut(&[Rgb]) -> u64) -> Result<(), Stopped> {
+    /// Traces all samples and hands them to `take` in order, with what clamping took off each where it is on; `take` says how
+    /// many were no finite numbers.
+    fn passes(
+        &mut self,
+        work: &Work,
+        control: &Control,
+        mut take: impl FnMut(&[Rgb], &[f32]) -> u64,
+    ) -> Result<(), Stopped> {
         let samples = work.samples.len() as u64;
         let end = work.pixels.area() * samples;
         let mut first = 0;
@@ -83,7 +94,8 @@ impl<'j> Engine<'j> {
             let slots = first..end.min(first + PASS);
             let count = slots.end - slots.start;
             self.pass(work, samples, slots);
-            self.rays.not_finite += take(&self.harvest.radiance);
+            let clamped = self.harvest.clamping.as_ref().map_or(&[][..], |clamping| &clamping.taken);
+            self.rays.not_finite += take(&self.harvest.radiance, clamped);
             self.rays.camera += count;
             control.add(count, &std::mem::take(&mut self.rays));
             first += count;
@@ -96,6 +108,9 @@ impl<'j> Engine<'j> {
         self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
         let mut camera = self.spare.pop().unwrap_or_default();
         expose(self.job, &self.start, work, samples, slots, &mut camera);
+        if let Some(clamping) = &mut self.harvest.clamping {
+            clamping.begin(camera.paths.iter().map(|path| path.weight.r));
+        }
         self.stack.push(camera);
         while let Some(queue) = self.stack.pop() {
             self.segment(queue);
@@ -149,7 +164,7 @@ impl<'j> Engine<'j> {
 
     /// Answers the shadow rays, light by light, and adds what comes through.
     fn shadows(&mut self) {
-        let Harvest { radiance, shadows, pending, .. } = &mut self.harvest;
+        let Harvest { radiance, clamping, shadows, pending, .. } = &mut self.harvest;
         *pending = 0;
         let last = shadows.len().saturating_sub(1);
         let kept = self.job.integrator.shadows();
@@ -166,7 +181,11 @@ impl<'j> Engine<'j> {
                 _ => self.job.world.transmittance_batch(rays, kept, through),
             }
             for (gain, through) in queue.gains.iter().zip(through) {
-                radiance[gain.slot as usize] += gain.radiance * *through;
+                let (slot, mut more) = (usize::from(gain.slot), gain.radiance * *through);
+                if let Some(clamping) = clamping {
+                    more = clamping.limit(slot, gain.way, more);
+                }
+                radiance[slot] += more;
             }
             queue.rays.clear();
             queue.gains.clear();
@@ -189,7 +208,7 @@ impl<'j> Engine<'j> {
             open.retain(|bent| bent.legs.len() <= leg || through.next().is_some_and(|through| !through.is_black()));
         }
         for bent in open.drain(..) {
-            self.harvest.radiance[bent.slot as usize] += bent.radiance;
+            self.harvest.add(bent.slot as usize, Way::Indirect, bent.radiance);
         }
         self.harvest.bent = open;
     }
@@ -255,12 +274,14 @@ impl<'w> Exposed<'w> {
         self.pixel.begin(self.work.samples.start, self.work.open.get(self.number));
     }
 
-    /// Adds the next finished samples to their pixels. Returns how many were no finite numbers.
-    fn add(&mut self, mut radiance: &[Rgb]) -> u64 {
+    /// Adds the next finished samples to their pixels, with what clamping took off them. Returns how many were no finite
+    /// numbers.
+    fn add(&mut self, mut radiance: &[Rgb], mut clamped: &[f32]) -> u64 {
         let mut lost = 0;
         while !radiance.is_empty() {
             let (now, later) = radiance.split_at(self.missing.min(radiance.len()));
-            lost += self.pixel.add(now);
+            let taken = clamped.split_off(..now.len().min(clamped.len())).unwrap_or_default();
+            lost += self.pixel.add_clamped(now, taken);
             self.missing -= now.len();
             radiance = later;
             if self.missing == 0 {

@@ -5,6 +5,7 @@
 
 use juggler_math::{UVec2, Vec2, hash};
 
+mod blue_noise;
 mod independent;
 mod sobol;
 mod stratified;
@@ -17,7 +18,9 @@ pub trait Spread: Send + Sync {
 
 closed_set! {
     /// Every sampler. In JSON: `{"sobol": {}}`, or short `"sobol"`.
-    pub enum AnySampler: Spread { sobol::Sobol, stratified::Stratified, independent::Independent }
+    pub enum AnySampler: Spread {
+        sobol::Sobol, stratified::Stratified, independent::Independent, blue_noise::BlueNoise,
+    }
 }
 
 impl Default for AnySampler {
@@ -37,6 +40,13 @@ pub enum Pattern {
     Stratified {
         /// Cells along an edge, at least 1.
         side: u32,
+    },
+    /// Owen-scrambled Sobol points that neighbouring pixels share.
+    BlueNoise {
+        /// 2 to the power of this many samples a pixel are planned.
+        bits: u8,
+        /// Where the pixel comes among those that it shares the points with; 0 for a picture.
+        place: u16,
     },
 }
 
@@ -59,6 +69,11 @@ impl Sampler {
     /// The numbers of sample 0 of a pixel of this picture.
     #[inline]
     pub fn pixel(&self, pixel: UVec2) -> Self {
+        if let Pattern::BlueNoise { bits, .. } = self.pattern {
+            let (block, place) = (pixel / blue_noise::BLOCK_EDGE, blue_noise::place(pixel));
+            let seed = hash::combine(hash::combine(self.seed, block.x), block.y);
+            return Self { seed, pattern: Pattern::BlueNoise { bits, place }, ..*self };
+        }
         Self { seed: hash::combine(hash::combine(self.seed, pixel.x), pixel.y), ..*self }
     }
 
@@ -91,6 +106,7 @@ impl Sampler {
             Pattern::Sobol => sobol::point(self.index, seed),
             Pattern::Stratified { side } => stratified::point(self.index, self.dimension == 1, seed, side),
             Pattern::Independent => independent::point(self.index, seed),
+            Pattern::BlueNoise { bits, place } => blue_noise::point(self.index, place, bits, seed),
         }
     }
 
@@ -102,6 +118,9 @@ impl Sampler {
             Pattern::Sobol => fill(points, first, |index| sobol::point(index, seed)),
             Pattern::Stratified { side } => stratified::points_in_order(first, seed, side, points),
             Pattern::Independent => fill(points, first, |index| independent::point(index, seed)),
+            Pattern::BlueNoise { bits, place } => {
+                fill(points, first, |index| blue_noise::point(index, place, bits, seed));
+            }
         }
     }
 
@@ -125,99 +144,4 @@ fn fill(points: &mut [Vec2], first: u32, point: impl Fn(u32) -> Vec2) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn points(pattern: Pattern, count: u32) -> Vec<Vec2> {
-        let pixel = Sampler::new(pattern, 7).pixel(UVec2::new(3, 5));
-        (0..count)
-            .map(|i| {
-                let mut sampler = pixel.sample(i);
-                sampler.skip(3);
-                sampler.next_2d()
-            })
-            .collect()
-    }
-
-    fn cells(points: &[Vec2], x: u32, y: u32) -> Vec<u32> {
-        let mut counts = vec![0; (x * y) as usize];
-        for p in points {
-            counts[((p.x * x as f32) as u32 * y + (p.y * y as f32) as u32) as usize] += 1;
-        }
-        counts
-    }
-
-    #[test]
-    fn sobol_fills_every_elementary_interval_once() {
-        let points = points(Pattern::Sobol, 256);
-        for bits in 0..=8 {
-            let counts = cells(&points, 1 << bits, 1 << (8 - bits));
-            assert!(counts.iter().all(|c| *c == 1), "2^{bits} columns");
-        }
-    }
-
-    #[test]
-    fn stratified_fills_every_cell_once_a_set() {
-        for side in [1, 3, 8] {
-            let pixel = Sampler::new(Pattern::Stratified { side }, 1).pixel(UVec2::new(9, 9));
-            for dimension in 0..3 {
-                let draw = |i: u32| {
-                    let mut sampler = pixel.sample(i);
-                    sampler.skip(dimension);
-                    sampler.next_2d()
-                };
-                let set: Vec<Vec2> = (side * side..2 * side * side).map(draw).collect();
-                assert!(cells(&set, side, side).iter().all(|c| *c == 1), "side {side}, dimension {dimension}");
-            }
-        }
-    }
-
-    #[test]
-    fn points_in_a_row_are_the_points_one_by_one() {
-        for pattern in [Pattern::Independent, Pattern::Sobol, Pattern::Stratified { side: 5 }] {
-            let pixel = Sampler::new(pattern, 5).pixel(UVec2::new(8, 1));
-            for first in [0, 3, 24, 70] {
-                let mut points = [Vec2::ZERO; 60];
-                pixel.first_points(first, &mut points);
-                let expected: Vec<Vec2> = (first..first + 60).map(|i| pixel.sample(i).next_2d()).collect();
-                assert_eq!(points.to_vec(), expected, "{pattern:?} from {first}");
-            }
-        }
-    }
-
-    #[test]
-    fn streams_are_uniform_and_unlike_each_other() {
-        for pattern in [Pattern::Independent, Pattern::Sobol, Pattern::Stratified { side: 8 }] {
-            let all: Vec<Vec2> = (0..64)
-                .flat_map(|x| {
-                    let pixel = Sampler::new(pattern, 3).pixel(UVec2::new(x, 1));
-                    (0..64).map(move |i| pixel.sample(i).branch(2).next_2d())
-                })
-                .collect();
-            assert!(all.iter().all(|p| p.cmpge(Vec2::ZERO).all() && p.cmplt(Vec2::ONE).all()));
-            let counts = cells(&all, 8, 8);
-            let chi: f32 = counts.iter().map(|c| (*c as f32 - 64.0).powi(2) / 64.0).sum();
-            assert!(chi < 110.0, "{pattern:?}: chi squared {chi} for 63 degrees of freedom");
-            let mean: Vec2 = all.iter().sum::<Vec2>() / all.len() as f32;
-            let covariance: f32 = all.iter().map(|p| (p.x - mean.x) * (p.y - mean.y)).sum::<f32>() / all.len() as f32;
-            assert!(covariance.abs() < 0.004, "{pattern:?}: covariance {covariance}");
-        }
-    }
-
-    #[test]
-    fn a_sample_depends_on_its_address_alone() {
-        let pixel = Sampler::new(Pattern::Sobol, 11).pixel(UVec2::new(4, 2));
-        let mut first = pixel.sample(5);
-        first.next_2d();
-        let second = first.next_2d();
-        let mut again = pixel.sample(5);
-        again.skip(1);
-        assert_eq!(again.next_2d(), second);
-        assert_ne!(pixel.sample(6).next_2d(), pixel.sample(5).next_2d());
-        assert_ne!(pixel.sample(5).branch(0).next_2d(), pixel.sample(5).branch(1).next_2d());
-        assert_ne!(
-            Sampler::new(Pattern::Sobol, 1 << 32).pixel(UVec2::ZERO),
-            Sampler::new(Pattern::Sobol, 0).pixel(UVec2::ZERO)
-        );
-    }
-}
+mod tests;

@@ -40,7 +40,7 @@ pub use juggler_bvh::{SimdLevel, simd_levels};
 pub use lamp::{Lamp, Source};
 pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
 pub use object::{Content, Object};
-pub use trace::Shadows;
+pub use trace::{MAX_PASSED, Shadows};
 
 /// What a ray met, before anything is worked out about it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,8 +19,11 @@ pub enum Shadows {
     Physical,
 }
 
-/// How often a shadow ray may cross transparent surfaces before it counts as blocked.
-const MAX_CROSSINGS: u32 = 64;
+/// How many transparent surfaces a classic shadow ray may meet before it counts as blocked.
+const MAX_FILTERS: u32 = 64;
+
+/// How many holes, and surfaces that others hide, light as it is may pass in a row.
+pub const MAX_PASSED: u16 = 1000;
 
 /// So few rays of a packet go through an instance one by one.
 const ALONE: u32 = 2;
@@ -227,7 +230,7 @@ impl World {
     /// The product of the filters of everything that the ray crosses, nearest first.
     fn filtered(&self, ray: Ray) -> Rgb {
         let filter = |vertex: &Vertex| self.materials.filter(vertex.material, &vertex.surface);
-        self.crossing(ray, |_| Rgb::WHITE, filter)
+        self.crossing(ray, MAX_FILTERS - 1, |_| Rgb::WHITE, filter)
     }
 
     /// What holes and media leave. Surfaces in solids of higher priority are not there.
@@ -248,14 +251,14 @@ impl World {
             }
             Rgb::splat(self.materials.gap(vertex.material, &vertex.surface))
         };
-        self.crossing(ray, left, gap)
+        self.crossing(ray, MAX_PASSED.into(), left, gap)
     }
 
     /// What is left of light along a ray: of each stretch between surfaces what `on_the_way` says of its length, of
-    /// each surface what `filter` says.
-    fn crossing(&self, ray: Ray, on_the_way: impl Fn(f32) -> Rgb, filter: impl Fn(&Vertex) -> Rgb) -> Rgb {
+    /// each of at most `most` surfaces what `filter` says.
+    fn crossing(&self, ray: Ray, most: u32, on_the_way: impl Fn(f32) -> Rgb, filter: impl Fn(&Vertex) -> Rgb) -> Rgb {
         let (mut rest, mut through) = (ray, Rgb::WHITE);
-        for _ in 0..MAX_CROSSINGS {
+        for _ in 0..=most {
             let mut probe = rest;
             let hit = self.closest(&mut probe);
             through *= on_the_way(probe.t_max);

@@ -8,7 +8,7 @@ mod studio;
 use crate::args::RenderArgs;
 use crate::console;
 use crate::failure::Failure;
-use crate::format::{amount, counted, duration};
+use crate::format::{amount, clamping, counted, duration};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::{Plan, Product, Reel, Shard, Shot};
@@ -253,14 +253,19 @@ impl Session {
             let samples = counted(lost.into(), "sample");
             console::say(&format!("warning: {samples} had no finite value and counted as black"));
         }
+        let clamping = if picture.is_clamped() { format!(", {}", clamping(&outcome.film)) } else { String::new() };
         if self.plan.quiet || self.plan.reel.is_some() {
+            // Of a film's frames only this is told.
+            if picture.is_clamped() && !self.plan.quiet {
+                console::say(&format!("{}{clamping}", shot.output));
+            }
             return Ok(());
         }
         let [width, height] = picture.size();
         let samples = counted(picture.samples().into(), "sample");
         let rate = amount(rays_per_second(&outcome.rays, seconds.render));
         let took = duration(total);
-        self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s", shot.output))
+        self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s{clamping}", shot.output))
     }
 
     /// Says which frames are there for a film to come.

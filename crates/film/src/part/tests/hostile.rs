@@ -108,7 +108,7 @@ fn chunks_that_changed_places_are_seen() {
     let region = Rect { x: 0, y: 0, width: 32, height: 16 };
     let layout = Layout::new(region);
     // Chunks of the same length.
-    let same = |number: u64| Chunk::encode(&tile(layout.tile(number).unwrap(), 0..16));
+    let same = |number: u64| Chunk::encode(&tile(layout.tile(number).unwrap(), 0..16), false);
     let chunks = [same(0), same(1)];
     let mut writer = PartWriter::create(&path, &description(region, 16)).unwrap();
     writer.add(0, &chunks[0]).unwrap();
@@ -135,8 +135,8 @@ struct Forged {
 
 impl Forged {
     fn new() -> Self {
-        let head = Head { layers: layers(), part: description(TINY, 21) };
-        let chunk = Chunk::encode(&tile(TINY, 0..21)).bytes;
+        let head = Head { layers: layers(false), part: description(TINY, 21) };
+        let chunk = Chunk::encode(&tile(TINY, 0..21), false).bytes;
         let head = serde_json::to_vec(&head).unwrap();
         let chunks = vec![(0, chunk)];
         Self { version: 1, head, head_length: None, length: None, count: None, chunks, chunk_length: None }
@@ -206,7 +206,7 @@ fn chunks_hold_runs_of_samples() {
     let run = |start: u32, end: u32, length: u32, packed: &[u8]| {
         [&start.to_le_bytes()[..], &end.to_le_bytes(), &length.to_le_bytes(), packed].concat()
     };
-    let packed = super::super::pack::pack(&[Default::default(); 2]);
+    let packed = super::super::pack::pack(&[Default::default(); 2], false);
     let good = |start: u32, end: u32| run(start, end, packed.len() as u32, &packed);
     let refused = |bytes: Vec<u8>| Forged::with_chunk(bytes).refused();
     assert!(refused(vec![1]).contains("ends too early"));
@@ -225,7 +225,7 @@ fn heads_are_checked() {
     assert!(head(b"").contains("head cannot be read") && head(b"\xff").contains("head cannot be read"));
     assert!(head("[".repeat(100_000).as_bytes()).contains("head cannot be read"));
     let with = |change: &dyn Fn(&mut Head)| {
-        let mut head = Head { layers: layers(), part: description(TINY, 21) };
+        let mut head = Head { layers: layers(false), part: description(TINY, 21) };
         change(&mut head);
         forged_head(&head)
     };

@@ -1,7 +1,7 @@
 //! What is written comes back, to the bit.
 
 use super::super::pack::{pack, unpack};
-use crate::testing::{description, place, tile, tiles};
+use crate::testing::{clamped_tiles, description, place, tile, tiles};
 use crate::*;
 use juggler_tracer::film::{Layout, Rect, Run, Sum, Tile};
 use proptest::prelude::*;
@@ -9,8 +9,9 @@ use proptest::prelude::*;
 const REGION: Rect = Rect { x: 5, y: 3, width: 40, height: 20 };
 
 /// Equal to the bit, signs of zeros and all.
-fn bits(sums: &[Sum]) -> Vec<([u64; 3], [u32; 3])> {
-    sums.iter().map(|sum| (sum.total.map(f64::to_bits), sum.spread.map(f32::to_bits))).collect()
+fn bits(sums: &[Sum]) -> Vec<([u64; 3], [u32; 3], u32)> {
+    let bits = |sum: &Sum| (sum.total.map(f64::to_bits), sum.spread.map(f32::to_bits), sum.clamped.to_bits());
+    sums.iter().map(bits).collect()
 }
 
 #[test]
@@ -113,7 +114,9 @@ fn sum() -> impl Strategy<Value = Sum> {
     // All bit patterns: zeros of both signs, subnormal, infinite and no numbers among them.
     let total = prop_oneof![any::<u64>().prop_map(f64::from_bits), (-1e6..1e6f64), Just(0.0)];
     let spread = prop_oneof![any::<u32>().prop_map(f32::from_bits), (0.0..1e3f32), Just(0.0)];
-    (prop::array::uniform3(total), prop::array::uniform3(spread)).prop_map(|(total, spread)| Sum { total, spread })
+    let clamped = prop_oneof![any::<u32>().prop_map(f32::from_bits), Just(0.0)];
+    let parts = (prop::array::uniform3(total), prop::array::uniform3(spread), clamped);
+    parts.prop_map(|(total, spread, clamped)| Sum { total, spread, clamped })
 }
 
 proptest! {
@@ -121,9 +124,14 @@ proptest! {
 
     #[test]
     fn sums_of_all_bits_come_back(sums in prop::collection::vec(sum(), 0..300)) {
-        let packed = pack(&sums);
-        prop_assert_eq!(bits(&unpack(&packed, sums.len()).unwrap()), bits(&sums));
-        prop_assert!(unpack(&packed, sums.len() + 64).is_none());
+        let packed = pack(&sums, true);
+        prop_assert_eq!(bits(&unpack(&packed, sums.len(), true).unwrap()), bits(&sums));
+        prop_assert!(unpack(&packed, sums.len() + 64, true).is_none());
+        prop_assert!(sums.is_empty() || unpack(&packed, sums.len(), false).is_none());
+        let unclamped: Vec<Sum> = sums.iter().map(|sum| Sum { clamped: 0.0, ..*sum }).collect();
+        let packed = pack(&sums, false);
+        prop_assert_eq!(bits(&unpack(&packed, sums.len(), false).unwrap()), bits(&unclamped));
+        prop_assert!(sums.is_empty() || unpack(&packed, sums.len(), true).is_none());
     }
 
     #[test]
@@ -146,10 +154,33 @@ proptest! {
 }
 
 #[test]
+fn what_clamping_took_comes_back() {
+    let (_folder, path) = place("a.jfilm");
+    let clamped = Description { clamped: true, ..description(REGION, 100) };
+    let made = clamped_tiles(REGION, 0..100);
+    assert!(made.iter().all(|(_, tile)| tile.clamped().total() > 0.0));
+    write(&path, &clamped, made.clone()).unwrap();
+    let part = Part::open(&path).unwrap();
+    assert!(part.description().clamped);
+    for (number, tile) in made {
+        assert_eq!(part.tile(number).unwrap(), tile);
+        let mut writer = PartWriter::create(&path, &clamped).unwrap();
+        let refused = writer.add(number, &Chunk::encode(&tile, false)).unwrap_err().to_string();
+        assert!(refused.contains("clamped"), "{refused}");
+    }
+    // A file of an unclamped picture is what it always was.
+    let head = |description: &Description| {
+        write(&path, description, tiles(REGION, 0..16)).unwrap();
+        String::from_utf8_lossy(&std::fs::read(&path).unwrap()).contains("clamped")
+    };
+    assert!(!head(&description(REGION, 100)) && head(&clamped));
+}
+
+#[test]
 fn smooth_pixels_take_little_room() {
     let sums: Vec<Sum> =
         (0..256).map(|i| Sum { total: [1.0 + f64::from(i as f32 / 1000.0); 3], ..Sum::default() }).collect();
-    let size = pack(&sums).len();
+    let size = pack(&sums, false).len();
     assert!(size < sums.len() * 36 / 4, "{size}");
 }
 

@@ -7,7 +7,7 @@
 //! {"path": {"max_depth": 16, "roulette_depth": 4}}
 //! ```
 
-use super::{Emit, Integrator, PathState};
+use super::{Clamp, Emit, Integrator, PathState};
 use crate::world::{Receiver, Shadows, Vertex, World};
 use caustic::Met;
 use juggler_math::{Ray, Rgb, Vec2};
@@ -74,6 +74,15 @@ pub struct Path {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 64))]
     pub light_samples: Option<u32>,
+    /// The most that light on a way of up to two stretches may bring to a sample: its brightest channel is limited, its
+    /// hue stays. Nothing for no limit. What this takes away is reported.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-6, max = 1e30))]
+    pub clamp_direct: Option<f32>,
+    /// The same for light on longer ways: fewer bright specks, and less light than there is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-6, max = 1e30))]
+    pub clamp_indirect: Option<f32>,
 }
 
 impl Path {
@@ -86,6 +95,8 @@ impl Path {
         max_volume: None,
         roulette_depth: None,
         light_samples: None,
+        clamp_direct: None,
+        clamp_indirect: None,
     };
 
     /// How many lights are asked at a vertex.
@@ -160,12 +171,18 @@ impl Integrator for Path {
     fn shadows(&self) -> Shadows {
         Shadows::Physical
     }
+
+    fn clamp(&self) -> Option<Clamp> {
+        let [direct, indirect] = [self.clamp_direct, self.clamp_indirect].map(|limit| limit.unwrap_or(f32::INFINITY));
+        (direct < f32::INFINITY || indirect < f32::INFINITY).then_some(Clamp { direct, indirect })
+    }
 }
 
 #[cfg(test)]
 impl Path {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        vec![Self::default(), Self { max_depth: 3, max_diffuse: Some(1), ..Self::DIRECT }]
+        let clamped = Self { clamp_direct: Some(4.0), clamp_indirect: Some(0.5), ..Self::default() };
+        vec![Self::default(), Self { max_depth: 3, max_diffuse: Some(1), ..Self::DIRECT }, clamped]
     }
 }

@@ -7,11 +7,8 @@ use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
 use crate::medium::{InteriorId, Interiors};
 use crate::surface::Surface;
-use crate::world::{Lighting, Prospect, Receiver, Vertex, World};
+use crate::world::{Lighting, MAX_PASSED, Prospect, Receiver, Vertex, World};
 use juggler_math::{Ray, Rgb, Vec3};
-
-/// How often a path may pass holes in a row.
-const MAX_PASSED: u16 = 1000;
 
 /// A vertex as seen by the one who looks.
 pub struct Seen<'a> {
