@@ -49,7 +49,7 @@ fn green(hidden: bool) -> Scene {
 
 /// A layer of varnish over paint: its mirror is asked for, its paint is not.
 fn varnished(hidden: bool) -> Scene {
-    let material = r#"{"plastic": {"color": 0.3, "roughness": 0, "ior": 2}}"#;
+    let material = r#"{"plastic": {"reflectance": 0.3, "roughness": 0, "ior": 2}}"#;
     let scene = Scene::floor().with(&ball(0.7), Vec3::new(0.9, 0.7, 0.0), &made_of(material, hidden));
     lamp(scene, 0.7, Vec3::new(-1.0, 2.5, 0.5), 10.0)
 }
@@ -76,7 +76,7 @@ fn room(hidden: bool) -> Scene {
         .with(
             r#"{"cuboid": {"min": [-1.5, -0.1, -1.5], "max": [1.5, 0, 1.5]}}"#,
             Vec3::ZERO,
-            r#"{"plastic": {"color": 0.5, "roughness": 0.3}}"#,
+            r#"{"plastic": {"reflectance": 0.5, "roughness": 0.3}}"#,
         )
         .with(&ball(0.5), Vec3::new(0.6, 0.6, 0.1), &made_of(GLASS, hidden))
         .placed(&ball(1.0), small, &made_of(MIRROR, hidden));
