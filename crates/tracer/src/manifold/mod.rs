@@ -162,6 +162,6 @@ pub fn spread(way: Way, from: &End, to: &End, sine: f32) -> f32 {
 
 /// Of an angle below 90 degrees, by its sine.
 #[inline]
-fn cosine(sine: f32) -> f32 {
+pub fn cosine(sine: f32) -> f32 {
     ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt()
 }

@@ -69,6 +69,12 @@ impl Interiors {
         Self { solids }
     }
 
+    /// After it crossed the surface of one.
+    #[must_use]
+    pub fn crossed(self, id: InteriorId, inwards: bool) -> Self {
+        if inwards { self.entered(id) } else { self.left(id) }
+    }
+
     /// Whether the surface of a solid is not there where a path that is in these meets it, on its way in or out: in another
     /// one, of higher priority.
     pub fn hide(&self, id: InteriorId, inwards: bool, interiors: &[Interior]) -> bool {

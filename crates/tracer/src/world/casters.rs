@@ -3,7 +3,7 @@
 use super::standing::{Standing, standing};
 use super::{Level, Receiver, World};
 use crate::bsdf::Bsdf;
-use crate::manifold::{Ball, Way};
+use crate::manifold::{Ball, Way, cosine};
 use crate::material::{MaterialId, MaterialTable, View};
 use crate::medium::Medium;
 use crate::shape::AnyShape;
@@ -105,16 +105,15 @@ impl Caster {
 
     /// What it leaves of light on a way of incidence `sine`.
     pub fn throughput(&self, way: Way, sine: f32) -> Rgb {
-        let cos = ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt();
         let scattered = |wo: Vec3, is_up: bool| {
             let deltas = self.polish.bsdf.deltas(wo);
             deltas.iter().filter(|delta| (delta.wi.z > 0.0) == is_up).fold(Rgb::BLACK, |sum, delta| sum + delta.weight)
         };
-        let Way::Refracted { ior } = way else { return scattered(Vec3::new(sine, 0.0, cos), true) };
+        let Way::Refracted { ior } = way else { return scattered(Vec3::new(sine, 0.0, cosine(sine)), true) };
         let inside = sine / ior;
-        let cos_inside = ((1.0 - inside) * (1.0 + inside)).sqrt();
+        let cos_inside = cosine(inside);
         let in_and_out =
-            scattered(Vec3::new(sine, 0.0, cos), false) * scattered(Vec3::new(inside, 0.0, -cos_inside), true);
+            scattered(Vec3::new(sine, 0.0, cosine(sine)), false) * scattered(Vec3::new(inside, 0.0, -cos_inside), true);
         in_and_out * self.polish.medium.transmittance(2.0 * self.ball.radius * cos_inside)
     }
 

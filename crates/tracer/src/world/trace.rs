@@ -244,7 +244,7 @@ impl World {
         let gap = |vertex: &Vertex| {
             if let Some(id) = self.materials.interior(vertex.material) {
                 let (enters, now) = (vertex.surface.normal.dot(ray.direction) < 0.0, inside.get());
-                inside.set(if enters { now.entered(id) } else { now.left(id) });
+                inside.set(now.crossed(id, enters));
                 if now.hide(id, enters, interiors) {
                     return Rgb::WHITE;
                 }

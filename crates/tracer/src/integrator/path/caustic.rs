@@ -7,6 +7,7 @@ use super::surface::Seen;
 use super::{Path, dimension};
 use crate::bsdf::{BsdfSample, Scatter};
 use crate::manifold::{Bend, End, Way, bends, spread};
+use crate::medium::Interiors;
 use crate::surface::Surface;
 use crate::world::{Caster, Lighting, Receiver, Vertex, World};
 use arrayvec::ArrayVec;
@@ -160,12 +161,11 @@ impl Seen<'_> {
         emit.if_all_free(ask.legs(self.surface, bend, self.time), gain);
     }
 
-    /// What a path knows of balls that goes on from here, `object`, as `sample` says.
-    pub fn chain(&self, world: &World, object: u32, path: &PathState, sample: &BsdfSample) -> Chain {
+    /// What a path knows of balls that goes on from here, `object`, as `sample` says, into the solids `inside`.
+    pub fn chain(&self, world: &World, object: u32, path: &PathState, sample: &BsdfSample, inside: Interiors) -> Chain {
         if !world.has_casters() {
             return Chain::NONE;
         }
-        let inside = self.inside(path, sample.wi);
         if sample.scatter != Scatter::Specular {
             let stage = if inside.is_empty() { Stage::Asked } else { Stage::Elsewhere };
             return Chain { stage, pdf: sample.pdf, sine: 0.0 };

@@ -150,9 +150,7 @@ impl Integrator for Path {
         let seen = Seen::new(world, ray, vertex, &shade, interior);
         if !seen.shade.bsdf.is_specular() {
             seen.ask_lights(self.asked(world, path), world, path, emit);
-            if world.has_casters() {
-                self.ask_by_ball(&seen, world, path, emit);
-            }
+            self.ask_by_ball(&seen, world, path, emit);
         }
         self.go_on(&seen, world, vertex.object, path, emit);
     }

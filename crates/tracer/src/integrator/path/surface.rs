@@ -35,11 +35,7 @@ pub fn pass(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &
 /// The solids that a path is in once it has crossed the surface of one, inwards or outwards.
 fn crossed(path: &PathState, inwards: bool, interior: Option<InteriorId>) -> Interiors {
     let inside = path.trail.inside;
-    match interior {
-        Some(id) if inwards => inside.entered(id),
-        Some(id) => inside.left(id),
-        None => inside,
-    }
+    interior.map_or(inside, |id| inside.crossed(id, inwards))
 }
 
 /// Whether a surface is not there, because a solid of higher priority is.
@@ -168,7 +164,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The normal on the side that light comes to; zero where it may come from both.
-    pub fn receiving_normal(&self) -> Vec3 {
+    fn receiving_normal(&self) -> Vec3 {
         if self.shade.transmissive { Vec3::ZERO } else { self.shade.frame.normal }
     }
 
@@ -189,7 +185,7 @@ impl<'a> Seen<'a> {
         *count = count.saturating_add(1);
         let ior_scale = path.trail.ior_scale * sample.ior * sample.ior;
         let (inside, passed) = (self.inside(path, sample.wi), 0);
-        let chain = self.chain(world, object, path, sample);
+        let chain = self.chain(world, object, path, sample, inside);
         if sample.scatter == Scatter::Specular {
             return Trail { pdf: f32::INFINITY, ior_scale, inside, passed, scattered, chain, ..path.trail };
         }
