@@ -111,8 +111,8 @@ impl Panorama {
 
     /// Bytes on the heap of one of so many pixels.
     pub const fn bytes(pixels: usize) -> usize {
-        // A pixel's colour, and for its cell a density and a sum.
-        pixels.saturating_mul(size_of::<Rgb>() + 2 * size_of::<f32>())
+        // A pixel's colour, and for its cell a density, a sum, and half a cut point at most.
+        pixels.saturating_mul(size_of::<Rgb>() + 2 * size_of::<f32>() + size_of::<u32>() / 2)
     }
 }
 
@@ -157,7 +157,11 @@ impl Panorama {
         let (x, y) = (turn(direction) * width as f32 - 0.5, down * height as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (right_share, low_share) = (x - left, y - top);
-        let column = |step: i64| (left as i64 + step).rem_euclid(width as i64) as usize;
+        let column = |step: i64| match left as i64 + step {
+            -1 => width.saturating_sub(1),
+            column if column < width as i64 => column as usize,
+            _ => 0,
+        };
         let row = |step: i64| (top as i64 + step).clamp(0, height as i64 - 1) as usize;
         let pixel = |x: usize, y: usize| self.image.pixels().get(y * width + x).copied().unwrap_or_default();
         let (left, right, top, low) = (column(0), column(1), row(0), row(1));

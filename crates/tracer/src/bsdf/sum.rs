@@ -273,6 +273,12 @@ impl Bsdf {
         self.lobes.iter().all(|one| one.lobe.is_specular())
     }
 
+    /// Whether there is any lobe that is neither matt nor a delta.
+    #[inline]
+    pub fn is_glossy(&self) -> bool {
+        self.lobes.iter().any(|one| one.lobe.scatter() == Scatter::Glossy)
+    }
+
     /// How most of what is no delta is scattered.
     pub fn scatter(&self) -> Scatter {
         let spread = self.lobes.iter().filter(|one| !one.lobe.is_specular());

@@ -6,6 +6,7 @@ use super::{Lamp, Vertex, World};
 use crate::background::AnyBackground;
 use crate::emitter::{AreaEmitter, LightBounds, LightTree, Pick};
 use crate::light::LightSample;
+use juggler_bvh::SimdLevel;
 use juggler_math::{Ray, Rgb, Vec2, Vec3};
 
 /// Everything that gives off light.
@@ -103,6 +104,12 @@ impl Emitters {
         }
         emitters.tree = LightTree::build(&bounds);
         emitters
+    }
+
+    /// The same for another vector unit.
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.tree = self.tree.with_simd_level(level);
+        self
     }
 
     fn add(&mut self, shape: Glowing, bounds: &mut Vec<LightBounds>) {

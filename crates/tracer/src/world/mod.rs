@@ -149,6 +149,7 @@ impl World {
     /// The same world for another vector unit than the best of this machine: for tests and measurements.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
         self.top = self.top.at_simd_level(level);
+        self.emitters = self.emitters.with_simd_level(level);
         self
     }
 

@@ -5,6 +5,7 @@ use super::node::{Child, Node, WIDTH};
 use super::summary::{Item, Summary, Tally};
 use super::{LightBounds, LightTree};
 use arrayvec::ArrayVec;
+use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Vec3};
 use std::ops::Range;
 
@@ -26,7 +27,8 @@ struct Task {
 
 pub(super) fn build(lights: &[LightBounds]) -> LightTree {
     let (mut items, scale) = items(lights);
-    let mut tree = LightTree { nodes: Vec::new(), trails: vec![LightTree::DARK; lights.len()], scale };
+    let mut tree =
+        LightTree { nodes: Vec::new(), trails: vec![LightTree::DARK; lights.len()], scale, level: SimdLevel::new() };
     if items.is_empty() {
         return tree;
     }

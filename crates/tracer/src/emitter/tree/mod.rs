@@ -9,6 +9,8 @@
 //! A light's way from the root, three bits a level, is stored with it: its chance is found by the very operations that
 //! pick it, to the last bit.
 
+use fearless_simd::dispatch;
+use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Vec3};
 
 mod build;
@@ -49,7 +51,7 @@ pub struct Pick {
 }
 
 /// A tree over lights.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct LightTree {
     /// The root is the first; none when nothing shines.
     nodes: Vec<Node>,
@@ -57,6 +59,15 @@ pub struct LightTree {
     trails: Vec<u64>,
     /// A power of two that takes the world's coordinates below 1.
     scale: f32,
+    /// The vector unit that weighs children.
+    level: SimdLevel,
+}
+
+impl Default for LightTree {
+    /// A tree over nothing.
+    fn default() -> Self {
+        Self::build(&[])
+    }
 }
 
 impl LightTree {
@@ -69,6 +80,12 @@ impl LightTree {
         build::build(lights)
     }
 
+    /// The same tree for another vector unit than the best of this machine: for tests and measurements.
+    pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
+        self.level = level;
+        self
+    }
+
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.trails.as_slice())
@@ -79,6 +96,11 @@ impl LightTree {
     /// `normal` is the unit normal on the side that is to be lit: what lies wholly below its plane is not picked.
     /// `Vec3::ZERO` where light counts from all sides: media, surfaces that let light through.
     pub fn sample(&self, point: Vec3, normal: Vec3, u: f32) -> Option<Pick> {
+        dispatch!(self.level, _ => self.descend(point, normal, u))
+    }
+
+    #[inline(always)]
+    fn descend(&self, point: Vec3, normal: Vec3, u: f32) -> Option<Pick> {
         let place = self.place(point, normal);
         let mut node = self.nodes.first()?;
         let mut weights = node.weights(&place);
@@ -97,6 +119,11 @@ impl LightTree {
 
     /// The chance with which [`LightTree::sample`] picks this light for the same point and normal.
     pub fn probability(&self, point: Vec3, normal: Vec3, index: u32) -> f32 {
+        dispatch!(self.level, _ => self.follow(point, normal, index))
+    }
+
+    #[inline(always)]
+    fn follow(&self, point: Vec3, normal: Vec3, index: u32) -> f32 {
         let trail = self.trails.get(index as usize).copied().filter(|trail| *trail != Self::DARK);
         let (Some(mut trail), Some(mut node)) = (trail, self.nodes.first()) else { return 0.0 };
         let place = self.place(point, normal);
@@ -119,6 +146,7 @@ impl LightTree {
 
     /// The point in the tree's coordinates. From a thousand million times as far as the lights lie from the origin,
     /// nothing changes any more but the size of the numbers.
+    #[inline(always)]
     fn place(&self, point: Vec3, normal: Vec3) -> Place {
         const FAR: f32 = 1e9;
         let scaled = point * self.scale;

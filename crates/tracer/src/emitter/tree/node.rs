@@ -1,7 +1,7 @@
 //! Eight children side by side, and what each may give at a point.
 //!
-//! Everything is written as loops over eight numbers without branches, so that the compiler makes them vector
-//! instructions; sums, products, quotients and square roots give the same bits on all machines.
+//! Everything is written as loops over eight numbers without branches, so that the compiler makes them instructions of
+//! the vector unit for which the caller is made (hence `inline(always)`); sums, products, quotients and square roots give the same bits on all machines.
 
 use super::summary::Summary;
 use juggler_math::Vec3;
@@ -64,6 +64,7 @@ pub(super) struct Place {
 }
 
 impl Place {
+    #[inline(always)]
     pub fn new(point: Vec3, normal: Vec3) -> Self {
         Self { point, normal, least_arrival: if normal == Vec3::ZERO { 1.0 } else { LEAST_ARRIVAL } }
     }
@@ -103,6 +104,7 @@ impl Node {
         };
     }
 
+    #[inline(always)]
     pub fn child(&self, slot: usize) -> Child {
         let child = self.child[slot & (WIDTH - 1)];
         if child & LIGHT == 0 { Child::Node(child as usize) } else { Child::Light(child & !LIGHT) }
@@ -111,7 +113,7 @@ impl Node {
     /// What each child may give at a place: power · cos θ' · cos θ'ᵢ / d², or 0 where it certainly gives nothing. θ' is
     /// the angle to the cone of normals and θ'ᵢ that to the normal of the place, both less the half angle
     /// under which the child's ball is seen.
-    #[inline]
+    #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "a plain loop is made a vector loop")]
     pub fn weights(&self, place: &Place) -> Weights {
         let (p, n) = (place.point, place.normal);
@@ -156,7 +158,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    #[inline]
+    #[inline(always)]
     fn new(lanes: Lanes) -> Self {
         // Both halves at once. Each sum is made of the one before, so that none is less.
         let mut sums = lanes;
@@ -170,13 +172,13 @@ impl Weights {
     }
 
     /// These, or by power where none can light the place: the bound of all together was wider than those of each.
-    #[inline]
+    #[inline(always)]
     pub fn or_powers(self, node: &Node) -> Self {
         if self.sums[WIDTH - 1] > 0.0 { self } else { Self::new(node.power) }
     }
 
     /// A slot, its chance, and `u` stretched to [0, 1) again; `None` when all weights are 0.
-    #[inline]
+    #[inline(always)]
     pub fn pick(&self, u: f32) -> Option<(usize, f32, f32)> {
         let total = self.sums[WIDTH - 1];
         let target = u * total;
@@ -191,7 +193,7 @@ impl Weights {
     }
 
     /// The chance of a slot.
-    #[inline]
+    #[inline(always)]
     pub fn chance(&self, slot: usize) -> f32 {
         let total = self.sums[WIDTH - 1];
         if total > 0.0 { self.lanes[slot] / total } else { 0.0 }

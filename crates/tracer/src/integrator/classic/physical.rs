@@ -22,10 +22,11 @@ impl Classic {
     /// A vertex whose material is not the classic one.
     pub(super) fn physical(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
         let mut sampler = path.sampler;
-        let choices = sampler.next_2d();
+        let choices = if world.is_simple(vertex) { Vec2::ZERO } else { sampler.at(0).next_2d() };
+        sampler.skip(1);
         let shade = world.shade(vertex, -ray.direction, 1.0, choices.x);
         let room = path.depth < self.max_depth;
-        if choices.y >= shade.opacity {
+        if shade.opacity < 1.0 && choices.y >= shade.opacity {
             if room {
                 emit.go_on(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, 0);
             }
@@ -33,11 +34,15 @@ impl Classic {
         }
         let wo = shade.frame.to_local(-ray.direction);
         let seen = Seen { vertex, shade, wo, time: ray.time };
-        emit.add(seen.shade.emission + seen.shade.bsdf.albedo(wo) * world.ambient());
-        for (number, lamp) in world.lamps().iter().enumerate() {
-            seen.light(lamp, number, &sampler, emit);
-            sampler.skip(1);
+        let ambient = world.ambient();
+        let reflected = if ambient.is_black() { Rgb::BLACK } else { seen.shade.bsdf.albedo(wo) * ambient };
+        emit.add(seen.shade.emission + reflected);
+        if !seen.shade.bsdf.is_specular() {
+            for (number, lamp) in (0..).zip(world.lamps()) {
+                seen.light(lamp, number as usize, &sampler.at(number), emit);
+            }
         }
+        sampler.skip(world.lamps().len() as u32);
         if room {
             self.reflect(&seen, path, sampler, emit);
         }
@@ -48,6 +53,9 @@ impl Classic {
         let deltas = seen.shade.bsdf.deltas(seen.wo);
         for (child, sample) in (0..).zip(&deltas) {
             self.follow_sample(seen, path, sample, child, emit);
+        }
+        if !seen.shade.bsdf.is_glossy() {
+            return;
         }
         let sample = seen.shade.bsdf.sample(seen.wo, sampler.next_2d(), sampler.next_1d());
         if let Some(glossy) = sample.filter(|sample| sample.scatter == Scatter::Glossy) {
