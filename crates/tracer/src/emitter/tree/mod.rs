@@ -3,8 +3,9 @@
 //! ed., section 12.6.3).
 //!
 //! Deviations: eight children a node, whose importances are computed side by side; angles are never computed, only
-//! their sines and cosines; the importance is never lower than a small share of what distance and power say where
-//! light may arrive at all, so that no such light has chance 0; the cosine at the point counts one side only.
+//! their sines and cosines; bounds only decide whether light may arrive at all, and the importance is an estimate of its
+//! mean, never lower than a small share of what distance and power say, so that no such light has chance 0; the cosine at
+//! the point counts one side only.
 //!
 //! A light's way from the root, three bits a level, is stored with it: its chance is found by the very operations that
 //! pick it, to the last bit.

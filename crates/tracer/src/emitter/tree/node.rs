@@ -22,6 +22,13 @@ const PLANE_SLACK: f32 = 1e-5;
 const LEAST_EMISSION: f32 = 1e-3;
 const LEAST_ARRIVAL: f32 = 1e-4;
 
+/// The share of their light that several lights are taken to send in a direction at least, times the sine under which their
+/// ball is seen: from close by they are seen from different sides.
+const LEAST_FACING: f32 = 0.2;
+
+/// How much more lights give in the mean in the middle of their ball than at its border, about.
+const WITHIN: f32 = 3.0;
+
 /// A child's number with this bit is a light, else a node.
 const LIGHT: u32 = 1 << 31;
 
@@ -42,6 +49,10 @@ pub(super) struct Node {
     cos_emission: Lanes,
     /// 0 for a child that shines to both sides; else a number that takes the other side's cosine out of the running.
     back: Lanes,
+    /// How much of it leaves in a direction, about: constant, linear, quadratic.
+    constant: Lanes,
+    linear: [Lanes; 3],
+    quadratic: [Lanes; 5],
     /// Power in units of the strongest light's; 0 where there is no child.
     power: Lanes,
     child: [u32; WIDTH],
@@ -81,6 +92,9 @@ impl Node {
             sin_spread: [0.0; WIDTH],
             cos_emission: [0.0; WIDTH],
             back: [0.0; WIDTH],
+            constant: [0.0; WIDTH],
+            linear: [[0.0; WIDTH]; 3],
+            quadratic: [[0.0; WIDTH]; 5],
             power: [0.0; WIDTH],
             child: [LIGHT; WIDTH],
         }
@@ -91,7 +105,12 @@ impl Node {
         for axis in 0..3 {
             self.center[axis][slot] = summary.center[axis];
             self.axis[axis][slot] = summary.axis[axis];
+            self.linear[axis][slot] = summary.facing.linear[axis];
         }
+        for (lanes, number) in self.quadratic.iter_mut().zip(summary.facing.quadratic) {
+            lanes[slot] = number;
+        }
+        self.constant[slot] = summary.facing.constant;
         self.radius[slot] = summary.radius;
         self.cos_spread[slot] = summary.cos_spread;
         self.sin_spread[slot] = (1.0 - f64::from(summary.cos_spread) * f64::from(summary.cos_spread)).sqrt() as f32;
@@ -110,9 +129,11 @@ impl Node {
         if child & LIGHT == 0 { Child::Node(child as usize) } else { Child::Light(child & !LIGHT) }
     }
 
-    /// What each child may give at a place: power · cos θ' · cos θ'ᵢ / d², or 0 where it certainly gives nothing. θ' is
-    /// the angle to the cone of normals and θ'ᵢ that to the normal of the place, both less the half angle
-    /// under which the child's ball is seen.
+    /// What each child gives at a place, about, or 0 where it certainly gives nothing. That is decided by
+    /// cos θ' and cos θ'ᵢ: θ' is the angle to the cone of normals and θ'ᵢ that to the normal of the place, both less the half
+    /// angle under which the child's ball is seen.
+    /// How much it is: power · what leaves in that direction · what arrives at the plane / d², each in the mean over the
+    /// ball's lights. Bounds in their place make far more noise (docs/benchmarks.md).
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "a plain loop is made a vector loop")]
     pub fn weights(&self, place: &Place) -> Weights {
@@ -139,13 +160,26 @@ impl Node {
             let cos_leaving = select(narrow, less(cos_axis, cos_both, sin_both), 1.0);
 
             let cos_plane = (to[0] * n.x + to[1] * n.y + to[2] * n.z) * inverse;
-            let cos_arriving = less(cos_plane, cos_ball, sin_ball);
-
-            let lights = (cos_leaving > self.cos_emission[i]) & (cos_arriving > -PLANE_SLACK);
-            let cosines = above(cos_leaving, LEAST_EMISSION) * above(cos_arriving, place.least_arrival);
-            weights[i] = select(lights, self.power[i] * cosines * (inverse * inverse), 0.0);
+            let lights = (cos_leaving > self.cos_emission[i]) & (cos_plane > -PLANE_SLACK - sin_ball);
+            let about = above(self.facing(i, to.map(|along| -along * inverse)), LEAST_FACING * sin_ball);
+            let leaving = above(select(about < cos_leaving, about, cos_leaving), LEAST_EMISSION);
+            let arriving = above(mean_above_plane(cos_plane, sin_ball), place.least_arrival);
+            let nearness = (inverse * inverse) * (1.0 + WITHIN * (1.0 - squared * (inverse * inverse)));
+            weights[i] = select(lights, self.power[i] * leaving * arriving * nearness, 0.0);
         }
         Weights::new(weights)
+    }
+
+    /// [`Facing`](super::summary::Facing) of a child in a direction `w`; one that is shorter than 1 counts as the mean of those
+    /// around it.
+    #[inline(always)]
+    fn facing(&self, child: usize, w: [f32; 3]) -> f32 {
+        let (l, q) = (&self.linear, &self.quadratic);
+        let linear = l[0][child] * w[0] + l[1][child] * w[1] + l[2][child] * w[2];
+        let zz = w[2] * w[2];
+        let squares = q[0][child] * (w[0] * w[0] - zz) + q[1][child] * (w[1] * w[1] - zz);
+        let products = q[2][child] * w[0] * w[1] + q[3][child] * w[0] * w[2] + q[4][child] * w[1] * w[2];
+        self.constant[child] + linear + squares + products
     }
 }
 
@@ -205,6 +239,14 @@ impl Weights {
 fn less(cos: f32, cos_other: f32, sin_other: f32) -> f32 {
     let sin = (above(1.0 - cos * cos, 0.0) + SINE_SLACK).sqrt();
     select(cos >= cos_other, 1.0, cos * cos_other + sin * sin_other)
+}
+
+/// The mean of a cosine, 0 below the plane, over a ball seen under an angle with that sine, about: a parabola where the plane
+/// cuts the ball.
+#[inline(always)]
+fn mean_above_plane(cos_center: f32, sin_ball: f32) -> f32 {
+    let rise = above(cos_center + sin_ball, 0.0);
+    select(cos_center > sin_ball, cos_center, rise * rise / (4.0 * sin_ball))
 }
 
 /// The greater number; a plain comparison, which is one instruction.

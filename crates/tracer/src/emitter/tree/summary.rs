@@ -24,10 +24,65 @@ pub(super) struct Summary {
     pub cos_emission: f32,
     pub power: f32,
     pub two_sided: bool,
+    pub facing: Facing,
+}
+
+/// How much of the greatest light leaves some lights in a direction ω, about, in the mean by power: a + b·ω + ω·C ω, the
+/// spherical harmonics up to the second order, with C symmetric and without trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Facing {
+    pub constant: f32,
+    pub linear: Vec3,
+    /// xx, yy, xy, xz, yz; the last three twice, as they count.
+    pub quadratic: [f32; 5],
+}
+
+impl Facing {
+    /// No less than the bounds say.
+    const ANY: Self = Self { constant: 1.0, linear: Vec3::ZERO, quadratic: [0.0; 5] };
+
+    /// The clamped cosine of flat lights (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps,
+    /// 2001, equation 8): 1/4 + c/2 + 5/32 (3 c² - 1), on both sides 1/2 + 5/16 (3 c² - 1). All others, and one light
+    /// alone, are taken for what their bounds say.
+    fn of(items: &[Item]) -> Self {
+        if items.len() < 2 {
+            return Self::ANY;
+        }
+        let mut sum = [0.0; 9];
+        let mut power = 0.0;
+        for item in items {
+            let weight = f64::from(item.light.power);
+            power += weight;
+            let terms = Self::terms(&item.light);
+            sum.iter_mut().zip(terms).for_each(|(sum, term)| *sum += weight * term);
+        }
+        let [constant, x, y, z, quadratic @ ..] = sum.map(|sum| (sum / power) as f32);
+        Self { constant, linear: Vec3::new(x, y, z), quadratic }
+    }
+
+    fn terms(light: &LightBounds) -> [f64; 9] {
+        const FLAT: f32 = 0.999;
+        let mut terms = [0.0; 9];
+        if light.cos_theta_o < FLAT || light.cos_theta_e.abs() > 1.0 - FLAT {
+            terms[0] = 1.0;
+            return terms;
+        }
+        let n = light.axis.as_dvec3();
+        let (constant, linear, quadratic) =
+            if light.two_sided { (0.5, 0.0, 15.0 / 16.0) } else { (0.25, 0.5, 15.0 / 32.0) };
+        let third = 1.0 / 3.0;
+        let squares = [n.x * n.x - third, n.y * n.y - third];
+        let products = [2.0 * n.x * n.y, 2.0 * n.x * n.z, 2.0 * n.y * n.z];
+        terms[0] = constant;
+        terms[1..4].copy_from_slice(&(n * linear).to_array());
+        terms[4..6].copy_from_slice(&squares.map(|square| quadratic * square));
+        terms[6..].copy_from_slice(&products.map(|product| quadratic * product));
+        terms
+    }
 }
 
 impl Summary {
-    /// Certain bounds: the ball around the box, the cone around all cones, the widest emission.
+    /// Certain bounds: a ball around the box, its centre that of the power, the cone around all cones, the widest emission.
     pub fn of(items: &[Item]) -> Self {
         /// Balls are that much larger than they are, in total: more than the rounding of angles close to a right one.
         const RADIUS_SLACK: f64 = 1e-4;
@@ -36,7 +91,7 @@ impl Summary {
         const COSINE_SLACK: f64 = 1e-6;
         const EMISSION_SLACK: f32 = 1e-5;
         let bounds = items.iter().fold(Aabb::EMPTY, |sum, item| sum.union(item.light.bounds));
-        let center = bounds.center();
+        let center = center(items);
         let corner = (bounds.max.as_dvec3() - center.as_dvec3()).max(center.as_dvec3() - bounds.min.as_dvec3());
         let two_sided = items.iter().any(|item| item.light.two_sided);
         let axis = mean_axis(items, two_sided);
@@ -50,8 +105,19 @@ impl Summary {
             cos_emission: emission - EMISSION_SLACK,
             power: items.iter().map(|item| f64::from(item.light.power)).sum::<f64>() as f32,
             two_sided,
+            facing: Facing::of(items),
         }
     }
+}
+
+/// The centre of their power.
+fn center(items: &[Item]) -> Vec3 {
+    let (mut sum, mut power) = (DVec3::ZERO, 0.0);
+    for item in items {
+        sum += item.center.as_dvec3() * f64::from(item.light.power);
+        power += f64::from(item.light.power);
+    }
+    (sum / power).as_vec3()
 }
 
 /// An axis in the middle of all. Where both sides count, axes are turned to the side of the first.

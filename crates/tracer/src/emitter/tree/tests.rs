@@ -252,5 +252,30 @@ fn many_lights_vary_far_less_than_by_power() {
         by_tree += relative_variance(&lights, point, normal, chance);
         by_power += relative_variance(&lights, point, normal, |i| f64::from(lights[i].power) / total);
     }
-    assert!(by_tree * 10.0 < by_power, "{by_tree} {by_power}");
+    assert!(by_tree * 100.0 < by_power, "{by_tree} {by_power}");
+}
+
+#[test]
+fn lights_that_face_anywhere_vary_little_from_among_them_too() {
+    let mut random = Random::new(1007);
+    let flat = |random: &mut Random| {
+        let position = Vec3::from_array([0; 3].map(|_| random.range(-1.0, 1.0)));
+        let axis = random.unit_vector();
+        LightBounds { axis, cos_theta_o: 1.0, ..point_light(position, random.range(0.5, 2.0)) }
+    };
+    let lights: Vec<_> = (0..2000).map(|_| flat(&mut random)).collect();
+    let tree = LightTree::build(&lights);
+    let mut variance = |reach: f32| {
+        let of_place = |random: &mut Random| {
+            let point = Vec3::from_array([0; 3].map(|_| random.range(-reach, reach)));
+            let normal = random.unit_vector();
+            relative_variance(&lights, point, normal, |i| f64::from(tree.probability(point, normal, i as u32)))
+        };
+        // No number where nothing shines.
+        let all: Vec<f64> = (0..300).map(|_| of_place(&mut random)).filter(|one| one.is_finite()).collect();
+        assert!(all.len() > 200);
+        all.iter().sum::<f64>() / all.len() as f64
+    };
+    let (among, around) = (variance(1.0), variance(4.0));
+    assert!(among < 1.2 && around < 0.3, "{among} {around}");
 }
