@@ -7,15 +7,22 @@ use crate::Vec2;
 /// A density over [0, 1), constant in cells of equal width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution1D {
-    /// Density in each cell; the mean is 1.
-    density: Vec<f32>,
-    /// `cumulative[i]`: chance of the cells before `i`; one more than cells, from 0 to exactly 1.
-    cumulative: Vec<f32>,
-    /// `guide[k]`: how many of `cumulative` are at most k / 2^n; 2^n + 1 of them. A search starts there, and mostly
-    /// ends in the same cache line.
+    /// One more than there are, so that each has a next one.
+    cells: Vec<Cell>,
+    /// `guide[k]`: how many cells have at most the chance k / 2^n before them; 2^n + 1 of them. A search starts there,
+    /// and mostly ends in the same cache line.
     guide: Vec<u32>,
     /// Mean of the weights it was made from.
     mean: f32,
+}
+
+/// A cell of a density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cell {
+    /// Chance of the cells before it: 0 of the first, exactly 1 of the one behind the last.
+    before: f32,
+    /// Density within; the mean is 1.
+    density: f32,
 }
 
 /// Cells that share a cut point, about.
@@ -23,11 +30,11 @@ const CELLS_PER_CUT: usize = 4;
 
 /// Where the searches for numbers between two cut points begin and end. There are a power of two and one of them, so that no
 /// product rounds.
-fn guide(cumulative: &[f32]) -> Vec<u32> {
-    let cuts = (cumulative.len() / CELLS_PER_CUT).next_power_of_two().min(1 << 24);
+fn guide(cells: &[Cell]) -> Vec<u32> {
+    let cuts = (cells.len() / CELLS_PER_CUT).next_power_of_two().min(1 << 24);
     let mut count = 0;
     let at_most = |cut: f32| {
-        while cumulative.get(count).is_some_and(|sum| *sum <= cut) {
+        while cells.get(count).is_some_and(|cell| cell.before <= cut) {
             count += 1;
         }
         count as u32
@@ -46,17 +53,17 @@ impl Distribution1D {
         let total: f64 = weights.iter().map(|&w| usable(w)).sum();
         let weight = |w: f32| if total > 0.0 { usable(w) } else { 1.0 };
         let sum = if total > 0.0 { total } else { weights.len() as f64 };
-        let density = weights.iter().map(|&w| (weight(w) * weights.len() as f64 / sum) as f32).collect();
-        let mut running = 0.0;
-        let cumulative = std::iter::once(0.0).chain(weights.iter().map(|&w| {
-            running += weight(w);
-            (running / sum).min(1.0) as f32
-        }));
-        let mut cumulative: Vec<f32> = cumulative.collect();
         // Rounding must leave no gap below 1, and no sample for the empty cells at the end.
         let last = weights.iter().rposition(|&w| weight(w) > 0.0).unwrap_or(0);
-        cumulative[last + 1..].fill(1.0);
-        Some(Self { density, guide: guide(&cumulative), cumulative, mean: (total / weights.len() as f64) as f32 })
+        let mut running = 0.0;
+        let cell = |(i, &w): (usize, &f32)| {
+            let before = if i > last { 1.0 } else { (running / sum).min(1.0) as f32 };
+            running += weight(w);
+            Cell { before, density: (weight(w) * weights.len() as f64 / sum) as f32 }
+        };
+        let mut cells: Vec<Cell> = weights.iter().enumerate().map(cell).collect();
+        cells.push(Cell { before: 1.0, density: 0.0 });
+        Some(Self { guide: guide(&cells), cells, mean: (total / weights.len() as f64) as f32 })
     }
 
     /// Mean of the weights.
@@ -66,7 +73,7 @@ impl Distribution1D {
 
     /// Cells.
     pub fn len(&self) -> usize {
-        self.density.len()
+        self.cells.len() - 1
     }
 
     /// Never: there is at least one cell.
@@ -76,10 +83,10 @@ impl Distribution1D {
 
     /// A place in [0, 1), its density and its cell.
     pub fn sample(&self, u: f32) -> (f32, f32, usize) {
-        let cell = self.at_most(u).clamp(1, self.density.len()) - 1;
-        let (low, high) = (self.cumulative[cell], self.cumulative[cell + 1]);
+        let cell = self.at_most(u).clamp(1, self.len()) - 1;
+        let (Cell { before: low, density }, high) = (self.cells[cell], self.cells[cell + 1].before);
         let inside = if high > low { ((u - low) / (high - low)).min(1f32.next_down()) } else { 0.5 };
-        let mut x = ((cell as f32 + inside) / self.density.len() as f32).min(1f32.next_down());
+        let mut x = ((cell as f32 + inside) / self.len() as f32).min(1f32.next_down());
         // Rounding at a border must not carry the place into the next cell, which may be empty.
         while self.cell(x) < cell {
             x = x.next_up();
@@ -87,29 +94,29 @@ impl Distribution1D {
         while self.cell(x) > cell {
             x = x.next_down();
         }
-        (x, self.density[cell], cell)
+        (x, density, cell)
     }
 
-    /// How many of the sums are at most `u` in [0, 1).
+    /// How many cells have at most `u` in [0, 1) before them.
     fn at_most(&self, u: f32) -> usize {
         let cuts = self.guide.len() - 1;
         let cut = ((u * cuts as f32) as usize).min(cuts - 1);
         let (from, to) = (self.guide[cut] as usize, self.guide[cut + 1] as usize);
-        from + self.cumulative[from..to].partition_point(|&c| c <= u)
+        from + self.cells[from..to].partition_point(|cell| cell.before <= u)
     }
 
     /// Density at `x` in [0, 1).
     pub fn pdf(&self, x: f32) -> f32 {
-        self.density[self.cell(x)]
+        self.cells[self.cell(x)].density
     }
 
     /// The chance of a cell, to pick one of a list; 0 for a cell that there is not.
     pub fn probability(&self, cell: usize) -> f32 {
-        self.density.get(cell).map_or(0.0, |d| d / self.density.len() as f32)
+        self.cells.get(cell).map_or(0.0, |cell| cell.density / self.len() as f32)
     }
 
     fn cell(&self, x: f32) -> usize {
-        ((x * self.density.len() as f32) as usize).min(self.density.len() - 1)
+        ((x * self.len() as f32) as usize).min(self.len() - 1)
     }
 }
 
@@ -185,11 +192,14 @@ mod tests {
                 (0..cells).map(|_| if random.f32() < 0.3 { 0.0 } else { random.f32().powi(9) }).collect();
             let distribution = Distribution1D::new(&weights).unwrap();
             let cuts = (distribution.guide.len() - 1) as f32;
-            let sums = distribution.cumulative.clone();
-            let borders =
-                sums.into_iter().chain((0..=cells).map(|k| k as f32 / cuts)).chain((0..500).map(|_| random.f32()));
+            let sums: Vec<f32> = distribution.cells.iter().map(|cell| cell.before).collect();
+            let borders = sums
+                .clone()
+                .into_iter()
+                .chain((0..=cells).map(|k| k as f32 / cuts))
+                .chain((0..500).map(|_| random.f32()));
             for u in borders.flat_map(|u| [u.next_down(), u, u.next_up()]).filter(|u| (0.0..1.0).contains(u)) {
-                let all = distribution.cumulative.partition_point(|&c| c <= u);
+                let all = sums.partition_point(|&sum| sum <= u);
                 assert_eq!(distribution.at_most(u), all, "{cells} cells, {u}");
             }
         }

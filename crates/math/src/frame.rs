@@ -14,6 +14,9 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The axes themselves.
+    pub const AXES: Self = Self { tangent: Vec3::X, bitangent: Vec3::Y, normal: Vec3::Z };
+
     /// Any frame around a unit normal (Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017).
     pub fn around(n: Vec3) -> Self {
         let sign = 1f32.copysign(n.z);

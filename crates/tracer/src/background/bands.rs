@@ -77,10 +77,8 @@ impl Bands {
         let (sin, cos) = fun::sin_cos_turns(u.y);
         let ring = (1.0 - sine * sine).max(0.0).sqrt();
         let wi = Frame::around(self.axis).to_world(Vec3::new(ring * cos, ring * sin, sine));
-        let half = if sine < 0.0 { &self.lower } else { &self.upper };
-        let share = if half.squared { sine * sine } else { sine.abs() };
-        let (pdf, radiance) = (self.density(sine), half.base.lerp(half.end, share));
-        (pdf > 0.0).then_some(BackgroundSample { wi, radiance, pdf })
+        let pdf = self.density(sine);
+        (pdf > 0.0).then_some(BackgroundSample { wi, pdf })
     }
 
     /// Density per steradian of a unit direction.

@@ -29,13 +29,11 @@ pub struct InvalidBackground {
     pub message: String,
 }
 
-/// Light from a direction that was picked.
+/// A direction that was picked for its light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BackgroundSample {
     /// Unit direction towards the light.
     pub wi: Vec3,
-    /// [`Background::radiance`] of a ray from the origin in this direction.
-    pub radiance: Rgb,
     /// Density per steradian with which it was picked, above 0.
     pub pdf: f32,
 }
@@ -51,12 +49,11 @@ pub trait Background: Send + Sync {
     }
     /// Light from that way; the ray's direction is a unit vector.
     fn radiance(&self, ray: &Ray) -> Rgb;
-    /// Light from a direction picked by `u` in the unit square, all over the sphere; `None` when there is none.
+    /// A direction picked by `u` in the unit square for its light, all over the sphere; `None` when there is none.
     fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
         let wi = warp::uniform_sphere(u);
-        let radiance = self.radiance(&Ray::new(Vec3::ZERO, wi));
         let lit = !self.mean().is_black();
-        lit.then_some(BackgroundSample { wi, radiance, pdf: warp::UNIFORM_SPHERE_PDF })
+        lit.then_some(BackgroundSample { wi, pdf: warp::UNIFORM_SPHERE_PDF })
     }
     /// Density per steradian with which [`Background::sample`] picks a unit direction; above 0 wherever there is
     /// light.

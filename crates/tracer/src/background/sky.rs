@@ -277,7 +277,7 @@ impl Background for Sky {
         };
         let pdf = tables.pdf(local);
         let wi = tables.orientation.to_world(local);
-        (pdf > 0.0).then(|| BackgroundSample { wi, radiance: tables.radiance(local), pdf })
+        (pdf > 0.0).then_some(BackgroundSample { wi, pdf })
     }
 
     fn pdf(&self, direction: Vec3) -> f32 {

@@ -294,13 +294,14 @@ impl Bsdf {
 
     /// Every delta with its full weight, not divided by a probability; `pdf` is 1.
     pub fn deltas(&self, wo: Vec3) -> ArrayVec<BsdfSample, MAX_DELTAS> {
-        let of = |(index, one): (usize, &Weighted)| {
-            let weight = one.weight;
-            one.lobe.deltas(wo).into_iter().map(move |delta| {
-                let weight = weight * self.dimming(index, wo, delta.wi);
-                BsdfSample { weight: delta.weight * weight, ..delta }
-            })
-        };
-        self.lobes.iter().enumerate().flat_map(of).take(MAX_DELTAS).collect()
+        let mut deltas = ArrayVec::new();
+        for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.has_specular()) {
+            for delta in one.lobe.deltas(wo) {
+                let weight = one.weight * self.dimming(index, wo, delta.wi);
+                let full = deltas.try_push(BsdfSample { weight: delta.weight * weight, ..delta });
+                debug_assert!(full.is_ok(), "more than {MAX_DELTAS} deltas");
+            }
+        }
+        deltas
     }
 }

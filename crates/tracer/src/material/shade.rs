@@ -67,11 +67,15 @@ pub struct Shade {
 }
 
 impl Shade {
-    /// Takes all light and gives none back.
-    pub fn black(normal: Vec3) -> Self {
-        let (emission, frame) = (Rgb::BLACK, Frame::around(normal));
-        Self { emission, opacity: 1.0, frame, bsdf: Bsdf::new(), transmissive: false, lamp_scale: 1.0 }
-    }
+    /// Takes all light and gives none back; its frame is to be set.
+    pub const BLACK: Self = Self {
+        emission: Rgb::BLACK,
+        opacity: 1.0,
+        frame: Frame::AXES,
+        bsdf: Bsdf::BLACK,
+        transmissive: false,
+        lamp_scale: 1.0,
+    };
 }
 
 /// The shading normal `normal` on the viewer's side, bent so far towards the true one that a mirror there shows

@@ -146,8 +146,8 @@ impl MaterialTable {
 
     /// Material `id` at a point; black for a number that is no material.
     pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
-        let mut shade = Shade::black(facing_normal(view, view.normal));
-        let (mut id, mut view) = (id, *view);
+        let mut shade = Shade::BLACK;
+        let (mut id, first, mut view) = (id, view, *view);
         // Every part is an earlier material, so this ends.
         while let Some(compiled) = self.materials.get(id.0 as usize) {
             id = match compiled {
@@ -178,13 +178,17 @@ impl MaterialTable {
                     shade.opacity *= mask.opacity(&self.textures, &view);
                     mask.material
                 }
-                Compiled::Boundary(_) => return Shade { opacity: 0.0, ..shade },
+                Compiled::Boundary(_) => {
+                    shade.opacity = 0.0;
+                    break;
+                }
                 Compiled::Emissive(emissive) => {
                     shade.emission += emissive.emission(&self.textures, &view);
                     emissive.material
                 }
             };
         }
+        shade.frame = Frame::around(facing_normal(first, first.normal));
         shade
     }
 

@@ -192,7 +192,7 @@ impl World {
             let rest = Vec2::new((place - place.floor()).min(1f32.next_down()), u.y);
             return match *emitters.far.get(place as usize)? {
                 Far::Lamp(number) => self.lamp_light(number, to, rest, emitters.far_chance()),
-                Far::Background => self.background_light(rest, emitters.far_chance()),
+                Far::Background => self.background_light(to, rest, emitters.far_chance()),
             };
         }
         let near = emitters.near_chance();
@@ -231,9 +231,14 @@ impl World {
         light.is_point().then(|| light.sample(to.point, Vec2::ZERO))?
     }
 
-    fn background_light(&self, u: Vec2, chance: f32) -> Option<Lighting> {
-        let sample = self.background.sample(u).filter(|sample| !sample.radiance.is_black())?;
-        Some(met(sample.wi, f32::INFINITY, sample.radiance, sample.pdf * chance, Vec3::ZERO))
+    fn background_light(&self, to: &Receiver, u: Vec2, chance: f32) -> Option<Lighting> {
+        let sample = self.background.sample(u)?;
+        // What shines on the wrong side of a surface is not looked up: pictures of the sky are large.
+        if sample.wi.dot(to.normal) < 0.0 {
+            return None;
+        }
+        let radiance = self.background.radiance(&Ray { time: to.time, ..Ray::new(to.point, sample.wi) });
+        (!radiance.is_black()).then(|| met(sample.wi, f32::INFINITY, radiance, sample.pdf * chance, Vec3::ZERO))
     }
 
     /// Density per steradian with which [`World::sample_light`] picks a direction in which a ray left the world.

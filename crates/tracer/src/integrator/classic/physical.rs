@@ -12,7 +12,7 @@ use juggler_math::{Ray, Rgb, Vec2, Vec3};
 /// A vertex as seen by the one who looks.
 struct Seen<'a> {
     vertex: &'a Vertex,
-    shade: Shade,
+    shade: &'a Shade,
     /// Unit, towards where the ray came from, in the frame of the scattering function.
     wo: Vec3,
     time: f32,
@@ -33,7 +33,7 @@ impl Classic {
             return;
         }
         let wo = shade.frame.to_local(-ray.direction);
-        let seen = Seen { vertex, shade, wo, time: ray.time };
+        let seen = Seen { vertex, shade: &shade, wo, time: ray.time };
         let ambient = world.ambient();
         let reflected = if ambient.is_black() { Rgb::BLACK } else { seen.shade.bsdf.albedo(wo) * ambient };
         emit.add(seen.shade.emission + reflected);
