@@ -117,36 +117,51 @@ impl Caster {
         in_and_out * self.polish.medium.transmittance(2.0 * self.ball.radius * cos_inside)
     }
 
-    /// What its ways are worth at a place; all 0 where it is not seen from outside, or lies below the plane.
+    /// As it is seen from a place; worth nothing from within, or where it lies below the plane.
     #[inline]
-    fn worth(&self, to: &Receiver) -> [f32; 2] {
+    fn sight(&self, to: &Receiver) -> Sight {
         let Ball { center, radius } = self.ball;
         let below = to.normal != Vec3::ZERO && to.normal.dot(center - to.point) <= -radius;
-        match self.ball.end(to.point).filter(|_| !below) {
-            Some(end) => self.polish.strengths.map(|strength| strength * Ball::seen(end.nearness)),
-            None => [0.0; 2],
-        }
+        let Some(end) = self.ball.end(to.point).filter(|_| !below) else { return Sight::NONE };
+        let seen = Ball::seen(end.nearness);
+        Sight { worths: self.polish.strengths.map(|strength| strength * seen), toward: end.toward, seen }
+    }
+}
+
+/// A ball as a place sees it.
+#[derive(Clone, Copy, Debug)]
+struct Sight {
+    /// What its ways are worth.
+    worths: [f32; 2],
+    /// Unit, from its centre towards the place.
+    toward: Vec3,
+    /// One less the cosine of the half angle under which it is seen.
+    seen: f32,
+}
+
+impl Sight {
+    const NONE: Self = Self { worths: [0.0; 2], toward: Vec3::ZERO, seen: 0.0 };
+
+    fn worth(&self) -> f32 {
+        self.worths[0] + self.worths[1]
     }
 }
 
 /// The polished balls as a place sees them.
-pub struct Prospect<'w> {
-    casters: &'w [Caster],
-    from: Receiver,
-    /// Of each, what its ways are worth.
-    worths: ArrayVec<[f32; 2], MOST>,
-    /// Of all.
+pub struct Prospect {
+    sights: ArrayVec<Sight, MOST>,
+    /// What all are worth.
     total: f32,
 }
 
-impl Prospect<'_> {
+impl Prospect {
     /// A way by which light may come, and its chance; none as often as there is little to see.
     pub fn pick(&self, u: f32) -> Option<(CasterId, f32)> {
         let all = self.total.max(ALWAYS);
         let mut target = u * all;
-        for (place, worths) in (0..).zip(&self.worths) {
-            for (is_refracted, worth) in [false, true].into_iter().zip(worths) {
-                if target < *worth {
+        for (place, sight) in (0..).zip(&self.sights) {
+            for (is_refracted, worth) in [false, true].into_iter().zip(sight.worths) {
+                if target < worth {
                     return Some((CasterId { place, is_refracted }, worth / all));
                 }
                 target -= worth;
@@ -157,8 +172,8 @@ impl Prospect<'_> {
 
     /// The chance with which [`Prospect::pick`] picks that one.
     pub fn chance(&self, id: CasterId) -> f32 {
-        let worths = self.worths.get(usize::from(id.place));
-        worths.map_or(0.0, |worths| worths[usize::from(id.is_refracted)]) / self.total.max(ALWAYS)
+        let sight = self.sights.get(usize::from(id.place));
+        sight.map_or(0.0, |sight| sight.worths[usize::from(id.is_refracted)]) / self.total.max(ALWAYS)
     }
 
     /// The share of directions that are to be those of balls.
@@ -169,13 +184,11 @@ impl Prospect<'_> {
     /// A direction in which a ball is seen.
     pub fn sample(&self, u: Vec2) -> Option<Vec3> {
         let mut target = u.x * self.total;
-        for (caster, worths) in self.casters.iter().zip(&self.worths) {
-            let worth = worths[0] + worths[1];
+        for sight in &self.sights {
+            let worth = sight.worth();
             if target < worth {
-                let end = caster.ball.end(self.from.point)?;
                 let u = Vec2::new((target / worth).min(1f32.next_down()), u.y);
-                let local = warp::uniform_cone(u, Ball::seen(end.nearness));
-                return Some(Frame::around(-end.toward).to_world(local));
+                return Some(Frame::around(-sight.toward).to_world(warp::uniform_cone(u, sight.seen)));
             }
             target -= worth;
         }
@@ -184,15 +197,12 @@ impl Prospect<'_> {
 
     /// Density per steradian of [`Prospect::sample`].
     pub fn pdf(&self, direction: Vec3) -> f32 {
-        let of = |(caster, worths): (&Caster, &[f32; 2])| {
-            let worth = worths[0] + worths[1];
-            let end = caster.ball.end(self.from.point).filter(|_| worth > 0.0)?;
-            let seen = Ball::seen(end.nearness);
+        let of = |sight: &Sight| {
             // The same way round as in sampling, whose rounding must not lead out of the cone.
-            let is_seen = 1.0 + direction.dot(end.toward) <= seen + 1e-6;
-            is_seen.then(|| worth / (self.total * TAU * seen))
+            let is_seen = 1.0 + direction.dot(sight.toward) <= sight.seen + 1e-6;
+            (sight.worth() > 0.0 && is_seen).then(|| sight.worth() / (self.total * TAU * sight.seen))
         };
-        self.casters.iter().zip(&self.worths).filter_map(of).sum()
+        self.sights.iter().filter_map(of).sum()
     }
 }
 
@@ -217,9 +227,13 @@ impl World {
 
     /// The polished balls as a place sees them.
     #[inline]
-    pub fn prospect(&self, from: &Receiver) -> Prospect<'_> {
-        let worths: ArrayVec<[f32; 2], MOST> = self.casters.iter().map(|caster| caster.worth(from)).collect();
-        let total = worths.iter().flatten().sum();
-        Prospect { casters: &self.casters, from: *from, worths, total }
+    pub fn prospect(&self, from: &Receiver) -> Prospect {
+        let mut prospect = Prospect { sights: ArrayVec::new(), total: 0.0 };
+        for caster in self.casters.iter().take(MOST) {
+            let sight = caster.sight(from);
+            prospect.total = prospect.total + sight.worths[0] + sight.worths[1];
+            prospect.sights.push(sight);
+        }
+        prospect
     }
 }

@@ -20,7 +20,7 @@ pub struct Seen<'a> {
     pub time: f32,
     interior: Option<InteriorId>,
     /// The polished balls that it sees, if it is to ask for lights.
-    pub prospect: Option<Prospect<'a>>,
+    pub prospect: Option<Prospect>,
 }
 
 /// Goes straight on as if nothing had been there.
