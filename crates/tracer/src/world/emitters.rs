@@ -16,7 +16,7 @@ pub(super) struct Emitters {
     tree: LightTree,
     finite: Vec<Emitter>,
     /// Those that have no place.
-    far: FarLights,
+    pub(super) far: FarLights,
     /// The shapes that shine, by number.
     shapes: Vec<Shining>,
 }

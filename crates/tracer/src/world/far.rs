@@ -1,5 +1,8 @@
 //! Lights without a place: suns, skies, pictures of surroundings. One of them is picked by what it brings.
 
+use super::World;
+use crate::background::AnyBackground;
+
 /// The share of picks that goes to all alike, so that a place which the strong ones do not reach still finds the weak ones
 /// (defensive mixture: Hesterberg 1995).
 const ALIKE: f32 = 0.25;
@@ -52,11 +55,31 @@ impl FarLights {
     }
 }
 
+impl World {
+    /// Names of the kinds of all that gives light without a place, each with its chance when one of them is asked. Paths
+    /// ask one of these as often, for each, as one of all that have a place.
+    pub fn far_lights(&self) -> Vec<(&'static str, f32)> {
+        let of = |(far, chance): &(Far, f32)| {
+            let name = match far {
+                Far::Lamp(number) => self.lamps.get(*number as usize)?.at(0.0).light.name(),
+                Far::Background => self.background.name(),
+            };
+            Some((name, *chance))
+        };
+        self.emitters.far.0.iter().filter_map(of).collect()
+    }
+
+    /// What lies behind everything.
+    pub fn backdrop(&self) -> &AnyBackground {
+        &self.background
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::{Lamp, Receiver, World};
+    use super::super::{Lamp, Receiver};
     use super::*;
-    use crate::background::{AnyBackground, Solid};
+    use crate::background::Solid;
     use crate::light::{AnyLight, Directional};
     use crate::material::MaterialTable;
     use juggler_math::testing::{Random, close};
@@ -114,5 +137,7 @@ mod tests {
         let far = FarLights::new(vec![(Far::Lamp(3), 7.0)]);
         assert_eq!((far.pick(0.25), far.chance(Far::Background)), (Some((Far::Lamp(3), 1.0, 0.25)), 0.0));
         assert_eq!(FarLights::new(Vec::new()).pick(0.5), None);
+        assert_eq!(world(&[1.0], 0.0).far_lights(), [("directional", 1.0)]);
+        assert_eq!(world(&[0.0; 3], 1.0).far_lights().last().unwrap().0, "solid");
     }
 }
