@@ -13,7 +13,7 @@ be normal if nothing but noise kept the pictures apart. Told are: the fraction o
 in percent with its own deviation. Noise is not normal: where one path in many carries most of the light, a mean of few
 samples lies too low more often than too high, together with its variance. So blocks are the test and pixels the magnifying glass, and
 every program stands also against itself, one half of its seeds against the other: that is what "the same" looks like here.
-Two means count as equal where they differ by less than FLOOR of their value, as single precision and half floats do.
+Two means count as equal where they differ by much less than FLOOR of their value, whatever their noise: rounding is none.
 
 OUT/SCENE.A.B.png shows z of the pixels, beside it of the blocks: red where A is brighter, blue where B is, black where equal,
 full colour at 5; --worst 10 prints the ten small blocks that differ most with their means.
