@@ -127,6 +127,8 @@ function showFigures(status) {
   const figure = (name, text) => (byId(`figure-${name}`).textContent = text);
   figure("samples", status.samples < 10 && status.samples % 1 ? status.samples.toFixed(1) : count(status.samples));
   figure("noise", status.noise === null ? "–" : `${(status.noise * 100).toPrecision(2)} %`);
+  byId("clamped").hidden = status.clamped === null;
+  figure("clamped", `${((status.clamped ?? 0) * 100).toFixed(1)} %`);
   figure("fps", status.frames_per_second > 0 ? status.frames_per_second.toFixed(status.frames_per_second < 10 ? 1 : 0) : "–");
   figure("rays", status.rays_per_second > 0 ? count(status.rays_per_second) : "–");
   const coarse = status.coarseness > 1 ? `, 1/${status.coarseness}` : "";

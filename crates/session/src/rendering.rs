@@ -72,6 +72,7 @@ impl Worker {
         (self.draft, self.toner, self.canvas, self.retoned) = (Arc::new(draft), toner, None, false);
         (self.status.stage, self.status.coarseness) = (Stage::Moving, coarseness);
         (self.status.samples, self.status.noise, self.status.hash) = (0.0, None, None);
+        self.status.clamped = None;
         let frame = self.frame(size, rgba, if coarseness == 1 { 1.0 } else { 0.0 });
         self.publish(Some(frame));
         true
@@ -212,14 +213,14 @@ impl Worker {
                 if done || called {
                     break;
                 }
-                self.tell_of(film, control, began);
+                self.tell_of(picture, film, control, began);
                 interval = (interval * 3 / 2).min(LAST_SHOW);
             }
         });
     }
 
-    fn tell_of(&mut self, film: &Film, control: &Control, began: Instant) {
-        self.count(film);
+    fn tell_of(&mut self, picture: &Picture, film: &Film, control: &Control, began: Instant) {
+        self.count(picture, film);
         self.status.rays_per_second = (control.rays().total() as f64 / began.elapsed().as_secs_f64().max(1e-9)) as f32;
         if self.follows_light() {
             self.show(self.status.samples);
@@ -228,18 +229,19 @@ impl Worker {
         }
     }
 
-    fn count(&mut self, film: &Film) {
+    fn count(&mut self, picture: &Picture, film: &Film) {
         let pixels = self.status.size.map(f64::from).iter().product::<f64>();
         self.status.samples = (film.samples() as f64 / pixels.max(1.0)) as f32;
         self.status.noise = screen::noise_of(film);
+        self.status.clamped = picture.is_clamped().then(|| screen::clamped_of(film));
     }
 
     fn finish(&mut self, subject: &Subject, film: &Film) {
         if self.status.stage == Stage::Finished {
             return;
         }
-        self.count(film);
         let picture = subject.picture();
+        self.count(picture, film);
         let whole = film.samples() == picture.total_samples();
         let summary = picture.develop(film, |_| Ok::<(), Infallible>(()));
         self.status.hash = summary.ok().filter(|_| whole).map(|summary| summary.hash);

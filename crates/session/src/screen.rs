@@ -178,6 +178,16 @@ pub fn noise_of(film: &Film) -> Option<f32> {
     (pixels > 0.0).then(|| (sum / pixels).sqrt() as f32)
 }
 
+/// Which share of the light of a picture clamping has taken away, from 0 to 1.
+pub fn clamped_of(film: &Film) -> f32 {
+    let tiles = (0..film.len()).filter_map(|place| film.tile(place));
+    let mean = |light: Rgb| f64::from(light.r + light.g + light.b) / 3.0;
+    let left: f64 = tiles.map(|tile| tile.means().into_iter().map(mean).sum::<f64>()).sum();
+    let taken = film.clamped().total();
+    let all = left + taken;
+    if all > 0.0 { (taken / all).clamp(0.0, 1.0) as f32 } else { 0.0 }
+}
+
 /// A colour of its own for each number.
 pub fn color_of(number: u32) -> Rgb {
     let mut bits = u64::from(number).wrapping_add(0x9e37_79b9_7f4a_7c15);

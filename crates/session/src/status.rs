@@ -45,6 +45,8 @@ pub struct Status {
     pub samples_wanted: u32,
     /// The estimated relative error of the picture, the root mean square; not known before 64 samples.
     pub noise: Option<f32>,
+    /// Which share of the light clamping has taken away, from 0 to 1; nothing where nothing is clamped, or known of it.
+    pub clamped: Option<f32>,
     /// Frames a second, over the last ones of a motion.
     pub frames_per_second: f32,
     /// Rays a second, lately.

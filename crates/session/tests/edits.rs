@@ -121,6 +121,19 @@ fn only_what_decides_samples_begins_anew() {
 }
 
 #[test]
+fn what_clamping_takes_away_is_told() {
+    let session = opened("juggler");
+    assert_eq!(session.status().clamped, None);
+    let by = |limit: f32| {
+        let value = json!({"path": {"max_depth": 3, "clamp_direct": limit}});
+        after(&session, Edit::Set { path: "/render/integrator".into(), value }).clamped
+    };
+    assert_eq!(by(1e6), Some(0.0));
+    let [little, much] = [0.9, 0.3].map(|limit| by(limit).unwrap());
+    assert!(0.0 < little && little < much && much < 0.9, "{little} {much}");
+}
+
+#[test]
 fn every_channel_shows_something_else() {
     let session = opened("juggler");
     // Of fewer nothing is known of the noise.

@@ -46,6 +46,9 @@ pub fn summary(status: &Status) -> String {
     if let Some(noise) = status.noise {
         parts.push(format!("noise {:.1} %", noise * 100.0));
     }
+    if let Some(share) = status.clamped {
+        parts.push(format!("clamping removed {:.1} %", share * 100.0));
+    }
     if status.rays_per_second > 0.0 && status.stage != Stage::Finished {
         parts.push(rays(status.rays_per_second));
     }
@@ -79,5 +82,7 @@ mod tests {
         assert_eq!(summary(&status), "12 of 64 samples · noise 1.2 % · 12.3 Mrays/s");
         status.stage = Stage::Finished;
         assert_eq!(summary(&status), "12 samples, finished · noise 1.2 %");
+        status.clamped = Some(0.0345);
+        assert_eq!(summary(&status), "12 samples, finished · noise 1.2 % · clamping removed 3.5 %");
     }
 }

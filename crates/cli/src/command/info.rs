@@ -14,6 +14,7 @@ use juggler::film;
 use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Scene, import};
+use juggler::tracer::background::AnyBackground;
 use juggler::tracer::world::Geometry;
 use serde_json::{Map, Value, json};
 use std::fs::File;
@@ -105,6 +106,8 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         row("instances", geometry.instances.to_string());
     }
     row("lights", geometry.lights.to_string());
+    row("background", background_in_words(compiled.world.backdrop()));
+    row("far lights", far_in_words(&compiled.world.far_lights()));
     row("materials", description.materials.len().to_string());
     row("textures", textures_in_words(description.textures.len(), geometry.texture_bytes));
     row("cameras", cameras.join(", "));
@@ -128,6 +131,18 @@ fn memory_in_words(geometry: usize, bvh: usize) -> String {
     format!("{} shapes, {} tree", bytes(geometry as u64), bytes(bvh as u64))
 }
 
+/// `gradient, 0.2 0.3 0.5 on average`.
+fn background_in_words(background: &AnyBackground) -> String {
+    let [r, g, b] = background.mean().to_array().map(|channel| (channel * 1e4).round() / 1e4);
+    format!("{}, {r} {g} {b} on average", background.name())
+}
+
+/// What has no place and yet gives light to paths, and how often which of it is asked: `directional 85 %, sky 15 %`.
+fn far_in_words(lights: &[(&str, f32)]) -> String {
+    let told: Vec<String> = lights.iter().map(|(name, chance)| format!("{name} {:.0} %", chance * 100.0)).collect();
+    if told.is_empty() { "none".into() } else { told.join(", ") }
+}
+
 /// `3, 12 MiB of pictures`.
 fn textures_in_words(count: usize, pictures: usize) -> String {
     if pictures > 0 { format!("{count}, {} of pictures", bytes(pictures as u64)) } else { count.to_string() }
@@ -145,9 +160,12 @@ fn corners(bounds: &Aabb) -> Option<[[f32; 3]; 2]> {
 }
 
 fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
-    let geometry = compiled.world.geometry();
+    let world = &compiled.world;
+    let geometry = world.geometry();
     let settings = &compiled.settings;
     let description = &scene.description;
+    let far = world.far_lights().into_iter().map(|(kind, chance)| json!({"kind": kind, "chance": chance}));
+    let far: Vec<Value> = far.collect();
     json!({
         "version": 1,
         "scene": name,
@@ -163,6 +181,8 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
             "instances": geometry.instances,
             "lights": geometry.lights,
         },
+        "background": {"kind": world.backdrop().name(), "mean": world.backdrop().mean().to_array()},
+        "far_lights": far,
         "materials": description.materials.len(),
         "textures": description.textures.len(),
         "cameras": compiled.cameras.iter().map(|(name, _)| name).collect::<Vec<_>>(),

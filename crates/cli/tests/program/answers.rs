@@ -68,6 +68,10 @@ fn what_is_in_a_scene() {
     let json: serde_json::Value = serde_json::from_str(&folder.good("info ball.json --json").stdout).unwrap();
     assert_eq!((&json["geometry"]["shapes"], &json["animation"]["frames"]), (&2.into(), &4.into()));
     assert_eq!(json["cameras"], serde_json::json!(["main", "top"]));
+    assert_eq!((&json["background"]["kind"], &json["far_lights"][0]["chance"]), (&"solid".into(), &1.0.into()));
+    for said in ["background   solid, 0.2 0.3 0.5 on average\n", "far lights   solid 100 %\n"] {
+        assert!(words.contains(said), "{words}");
+    }
     fs::write(
         folder.path("film.json"),
         SCENE.replace("\"version\": 1,", MOVING).replace("\"background\": [0.2, 0.3, 0.5],", ""),

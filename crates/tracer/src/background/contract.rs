@@ -161,6 +161,7 @@ fn json_goes_round() {
     for background in AnyBackground::examples() {
         let text = serde_json::to_string(&background).unwrap();
         let again = serde_json::from_str::<AnyBackground>(&text).unwrap();
+        assert!(text.starts_with(&format!("{{\"{}\":", background.name())), "{text}");
         assert_eq!(serde_json::to_string(&again).unwrap(), text);
         if !matches!(background, AnyBackground::Environment(_)) {
             let mut again = again;

@@ -84,6 +84,19 @@ closed_set! {
     }
 }
 
+impl AnyBackground {
+    /// The name in the scene file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Solid(_) => "solid",
+            Self::Gradient(_) => "gradient",
+            Self::Dome(_) => "dome",
+            Self::Environment(_) => "environment",
+            Self::Sky(_) => "sky",
+        }
+    }
+}
+
 /// Refuses light that is negative or not finite.
 fn check_color(field: &'static str, color: Rgb) -> Result<(), InvalidBackground> {
     if color.to_array().iter().all(|v| *v >= 0.0 && v.is_finite()) {

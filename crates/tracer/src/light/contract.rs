@@ -175,6 +175,7 @@ fn json_goes_round() {
         }
         let text = serde_json::to_string(&light).unwrap();
         assert_eq!(serde_json::from_str::<AnyLight>(&text).unwrap(), light, "{text}");
+        assert!(text.starts_with(&format!("{{\"{}\":", light.name())), "{text}");
     }
 }
 

@@ -173,6 +173,9 @@ impl Shape for Sphere {
     }
 }
 
+/// So close to the surface, in radii, a point counts as on it.
+const TOUCHING: f64 = 1e-6;
+
 /// The cone that a sphere fills, seen from outside.
 struct Cone {
     /// Unit vector from the centre to the place that looks.
@@ -185,11 +188,13 @@ struct Cone {
 }
 
 impl Cone {
+    /// `None` from within and from the surface itself, where rounding decides on which side a point lies: who stands
+    /// inside must see the other wall.
     fn seen_from(from: Vec3, radius: f32) -> Option<Self> {
         let (from, radius) = (from.as_dvec3(), f64::from(radius));
         let distance = from.length();
         let sin = radius / distance;
-        (sin < 1.0).then(|| Self {
+        (distance > radius * (1.0 + TOUCHING)).then(|| Self {
             axis: (from / distance).as_vec3(),
             sin: sin as f32,
             sin_squared: (sin * sin) as f32,
@@ -207,5 +212,27 @@ impl Sphere {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
         [1.0, 2.5, 1e-4, 1e6].map(|radius| Self { radius }).to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::Random;
+
+    /// Places on a sphere lie by their rounding a little in or out of it.
+    #[test]
+    fn who_stands_on_a_wall_sees_the_other_one() {
+        let mut random = Random::new(771);
+        for radius in [0.3, 7.0, 1e5] {
+            let sphere = Sphere { radius };
+            for _ in 0..1000 {
+                let from = random.unit_vector() * radius;
+                let far = (0..20).filter_map(|_| sphere.sample(from, random.vec2()));
+                let far = far.filter(|sample| sample.point.distance(from) > 0.2 * radius && sample.pdf > 0.0).count();
+                // Evenly by area 99 of 100 are so far away; in a cone of half the sky none.
+                assert!(far > 10, "{from}: {far}");
+            }
+        }
     }
 }

@@ -22,6 +22,7 @@ mod constant;
 mod dots;
 mod fbm;
 mod gradient;
+mod heights;
 mod image;
 mod marble;
 mod mix;

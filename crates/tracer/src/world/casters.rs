@@ -10,6 +10,8 @@ use crate::shape::AnyShape;
 use crate::surface::Surface;
 use arrayvec::ArrayVec;
 use juggler_math::{Frame, Motion, Rgb, Vec2, Vec3, warp};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
 /// More balls than this and only the largest are asked: asking takes a look at each.
@@ -79,22 +81,26 @@ pub struct CasterId {
 impl Caster {
     /// The polished balls among the shapes of a world.
     pub(super) fn all(top: &Level, materials: &MaterialTable) -> Vec<Self> {
-        let is_polished =
-            |shape: &AnyShape, id| matches!(shape, AnyShape::Sphere(_)) && Polish::of(id, materials).is_some();
+        // Each material once: balls may be many.
+        let polishes = RefCell::new(BTreeMap::new());
+        let has_polish = |id| polishes.borrow_mut().entry(id).or_insert_with(|| Polish::of(id, materials)).is_some();
+        let is_polished = |shape: &AnyShape, id| matches!(shape, AnyShape::Sphere(_)) && has_polish(id);
         let balls = standing(top, MOST_FOUND, &is_polished);
-        let mut casters: Vec<Self> = balls.iter().filter_map(|ball| Self::new(ball, materials)).collect();
+        let polishes = polishes.into_inner();
+        let polish = |ball: &Standing| polishes.get(&ball.material)?.as_ref();
+        let mut casters: Vec<Self> = balls.iter().filter_map(|ball| Self::new(ball, polish(ball)?)).collect();
         casters.sort_by(|a, b| b.ball.radius.total_cmp(&a.ball.radius));
         casters.truncate(MOST);
         casters
     }
 
-    fn new(standing: &Standing, materials: &MaterialTable) -> Option<Self> {
+    fn new(standing: &Standing, polish: &Polish) -> Option<Self> {
         let (AnyShape::Sphere(sphere), Motion::Still(transform)) = (&*standing.shape, &standing.motion) else {
             return None;
         };
         let radius = sphere.radius * transform.uniform_scale()?;
         let ball = Ball { center: transform.origin(), radius };
-        Some(Self { ball, object: standing.number, polish: Polish::of(standing.material, materials)? })
+        Some(Self { ball, object: standing.number, polish: polish.clone() })
     }
 
     /// How light goes by it.

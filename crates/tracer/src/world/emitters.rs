@@ -1,6 +1,7 @@
 //! All that gives off light, as the path tracer asks for it: one of many, by how much it may bring.
 
 use super::areas::{Areas, NOWHERE};
+use super::far::{Far, FarLights};
 use super::glowing::Glowing;
 use super::{Lamp, Vertex, World};
 use crate::background::AnyBackground;
@@ -16,7 +17,7 @@ pub(super) struct Emitters {
     tree: LightTree,
     finite: Vec<Emitter>,
     /// Those that have no place.
-    far: Vec<Far>,
+    pub(super) far: FarLights,
     /// The shapes that shine, by number.
     shapes: Vec<Shining>,
 }
@@ -40,15 +41,6 @@ enum Emitter {
     Area(Box<AreaEmitter>, u32),
     /// The shape at that place as a whole.
     Shape(u32),
-}
-
-/// Something without a place that gives off light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Far {
-    /// A light of the scene, by number.
-    Lamp(u32),
-    /// What lies behind everything.
-    Background,
 }
 
 /// Light from one place of an emitter that was picked.
@@ -85,19 +77,20 @@ impl Emitters {
     /// Lamps, shapes, and the background; `radius` is that of a ball around everything that has an end.
     pub fn new(lamps: &[Lamp], mut glowing: Vec<Glowing>, background: &AnyBackground, radius: f32) -> Self {
         let mut emitters = Self::default();
-        let mut bounds: Vec<LightBounds> = Vec::new();
+        let (mut bounds, mut far): (Vec<LightBounds>, Vec<(Far, f32)>) = (Vec::new(), Vec::new());
         for (number, lamp) in (0..).zip(lamps) {
             match lamp.bounds(radius) {
                 Some(of_lamp) => {
                     emitters.finite.push(Emitter::Lamp(number));
                     bounds.push(of_lamp);
                 }
-                None => emitters.far.push(Far::Lamp(number)),
+                None => far.push((Far::Lamp(number), lamp.power(1.0))),
             }
         }
         if !background.mean().is_black() {
-            emitters.far.push(Far::Background);
+            far.push((Far::Background, background.power(1.0)));
         }
+        emitters.far = FarLights::new(far);
         glowing.sort_by_key(|shape| shape.number);
         for shape in glowing {
             emitters.add(shape, &mut bounds);
@@ -129,14 +122,14 @@ impl Emitters {
         self.shapes.push(Shining { shape, first, parts });
     }
 
-    /// The chance of one without a place, of which each is as likely as all that have one.
+    /// The chance of all without a place: each counts as much as all that have one.
     fn far_chance(&self) -> f32 {
-        let near = usize::from(!self.finite.is_empty());
-        if self.far.is_empty() { 0.0 } else { 1.0 / (self.far.len() + near) as f32 }
+        let (far, near) = (self.far.len(), usize::from(!self.finite.is_empty()));
+        if far == 0 { 0.0 } else { far as f32 / (far + near) as f32 }
     }
 
     fn near_chance(&self) -> f32 {
-        1.0 - self.far_chance() * self.far.len() as f32
+        1.0 - self.far_chance()
     }
 
     /// One of those that have a place.
@@ -186,13 +179,13 @@ impl World {
     /// Light that may come to a place from one of all that give light, chosen by `u`.
     pub fn sample_light(&self, to: &Receiver, u: Vec2) -> Option<Lighting> {
         let emitters = &self.emitters;
-        let far = emitters.far_chance() * emitters.far.len() as f32;
+        let far = emitters.far_chance();
         if u.x < far {
-            let place = (u.x / emitters.far_chance()).min((emitters.far.len() as f32).next_down());
-            let rest = Vec2::new((place - place.floor()).min(1f32.next_down()), u.y);
-            return match *emitters.far.get(place as usize)? {
-                Far::Lamp(number) => self.lamp_light(number, to, rest, emitters.far_chance()),
-                Far::Background => self.background_light(to, rest, emitters.far_chance()),
+            let (picked, chance, rest) = emitters.far.pick((u.x / far).min(1f32.next_down()))?;
+            let (chance, rest) = (chance * far, Vec2::new(rest, u.y));
+            return match picked {
+                Far::Lamp(number) => self.lamp_light(number, to, rest, chance),
+                Far::Background => self.background_light(to, rest, chance),
             };
         }
         let near = emitters.near_chance();
@@ -243,10 +236,8 @@ impl World {
 
     /// Density per steradian with which [`World::sample_light`] picks a direction in which a ray left the world.
     pub fn background_pdf(&self, direction: Vec3) -> f32 {
-        if !self.emitters.far.contains(&Far::Background) {
-            return 0.0;
-        }
-        self.background.pdf(direction) * self.emitters.far_chance()
+        let chance = self.emitters.far.chance(Far::Background);
+        if chance > 0.0 { self.background.pdf(direction) * (chance * self.emitters.far_chance()) } else { 0.0 }
     }
 
     /// Density per steradian with which [`World::sample_light`] picks, for the place `from`, where `ray` met `vertex`.

@@ -67,6 +67,12 @@ impl Lamp {
         bounds
     }
 
+    /// Mean of [`Light::power`](crate::light::Light::power) over its time.
+    pub fn power(&self, world_radius: f32) -> f32 {
+        let all = || std::iter::once(&self.first).chain(&self.others);
+        all().map(|source| source.light.power(world_radius)).sum::<f32>() / all().count() as f32
+    }
+
     /// Whether it is not always the same.
     pub fn moves(&self) -> bool {
         !self.others.is_empty()

@@ -15,6 +15,7 @@ mod areas;
 mod casters;
 mod differential;
 mod emitters;
+mod far;
 mod geometry;
 mod glowing;
 mod inside;

@@ -1,8 +1,10 @@
 //! What holds for every lobe, run over a list of examples.
 
+mod chart;
 mod energy;
 mod examples;
 mod grid;
+mod needles;
 mod numbers;
 mod principled;
 mod sampling;

@@ -155,10 +155,8 @@ impl Seen<'_> {
         if !(asked > 0.0 && asked < f32::INFINITY) {
             return;
         }
-        let share = if ask.light.can_be_met { power_heuristic(asked, pdf) } else { 1.0 };
-        let scale = if ask.light.lamp.is_some() { self.shade.lamp_scale } else { 1.0 };
-        let gain = radiance * scattered * ask.caster.throughput(ask.way, bend.sine) * (share * scale / asked);
-        emit.if_all_free(ask.legs(self.surface, bend, self.time), gain);
+        let thrown = radiance * scattered * ask.caster.throughput(ask.way, bend.sine);
+        emit.if_all_free(ask.legs(self.surface, bend, self.time), thrown * ask.light.gain(asked, pdf, self.shade));
     }
 
     /// What a path knows of balls that goes on from here, `object`, as `sample` says, into the solids `inside`.

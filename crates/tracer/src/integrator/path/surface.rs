@@ -54,6 +54,16 @@ pub fn around(world: &World, path: &PathState, interior: Option<InteriorId>) -> 
     others.top(world.interiors()).map_or(1.0, |interior| interior.ior)
 }
 
+impl Lighting {
+    /// What its light counts for that was asked with the density `asked` and may have been met with the density `met`.
+    #[inline]
+    pub fn gain(&self, asked: f32, met: f32, shade: &Shade) -> f32 {
+        let share = if self.can_be_met { power_heuristic(asked, met) } else { 1.0 };
+        let scale = if self.lamp.is_some() { shade.lamp_scale } else { 1.0 };
+        share * scale / asked
+    }
+}
+
 impl<'a> Seen<'a> {
     pub fn new(
         world: &'a World,
@@ -147,11 +157,9 @@ impl<'a> Seen<'a> {
         if scattered.is_black() {
             return;
         }
-        let share = if light.can_be_met { power_heuristic(light.pdf, pdf) } else { 1.0 };
-        let scale = if light.lamp.is_some() { self.shade.lamp_scale } else { 1.0 };
         let ray = self.surface.spawn_to(light.wi, light.distance, self.time);
         let inside = self.inside(path, wi);
-        emit.if_visible_inside(ray, light.radiance * scattered * (share * scale / light.pdf), inside);
+        emit.if_visible_inside(ray, light.radiance * scattered * light.gain(light.pdf, pdf, self.shade), inside);
     }
 
     /// The solids that a path is in that goes on from here in the direction `wi`, which is local.
