@@ -24,6 +24,7 @@ macro_rules! built_in {
 const BUILT_IN: &[BuiltIn] = built_in! {
     "blossom",
     "chess",
+    "chess-daylight",
     "chess-opening",
     "cornell-box",
     "cornell-cube",
@@ -36,7 +37,9 @@ const BUILT_IN: &[BuiltIn] = built_in! {
     "graham",
     "juggler",
     "juggler-daylight",
+    "many-lights-room",
     "marbles",
+    "material-balls",
     "one-sphere",
     "red-cube",
     "scalablitz-ice-cream",
