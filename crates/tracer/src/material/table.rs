@@ -146,14 +146,12 @@ impl MaterialTable {
 
     /// Material `id` at a point; black for a number that is no material.
     pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
-        let mut shade = Shade::BLACK;
-        let (mut id, first, mut view) = (id, view, *view);
+        let (mut shade, mut id, first, mut view) = (Shade::BLACK, id, view, *view);
         // Every part is an earlier material, so this ends.
         while let Some(compiled) = self.materials.get(id.0 as usize) {
             id = match compiled {
                 Compiled::Phong(phong) => {
-                    let lobe = phong.eval(&self.textures, || view.lookup());
-                    Self::classic(&lobe, &view, &mut shade);
+                    Self::classic(&phong.eval(&self.textures, || view.lookup()), &view, &mut shade);
                     return shade;
                 }
                 Compiled::Physical(physical) => {
@@ -170,9 +168,8 @@ impl MaterialTable {
                 }
                 Compiled::Checkerboard(board) => board.pick(view.surface),
                 Compiled::Mix(mix) => {
-                    let (part, rest) = mix.pick(&self.textures, &view);
-                    view.pick = rest;
-                    part
+                    (id, view.pick) = mix.pick(&self.textures, &view);
+                    continue;
                 }
                 Compiled::Mask(mask) => {
                     shade.opacity *= mask.opacity(&self.textures, &view);
