@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(summary(&status), "12 of 64 samples · noise 1.2 % · 12.3 Mrays/s");
         status.stage = Stage::Finished;
         assert_eq!(summary(&status), "12 samples, finished · noise 1.2 %");
-        status.clamped = Some(0.0345);
+        status.clamped = Some(0.0346);
         assert_eq!(summary(&status), "12 samples, finished · noise 1.2 % · clamping removed 3.5 %");
     }
 }
