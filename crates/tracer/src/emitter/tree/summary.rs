@@ -43,16 +43,14 @@ impl Facing {
 
     /// The clamped cosine of flat lights (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps,
     /// 2001, equation 8): 1/4 + c/2 + 5/32 (3 c² - 1), on both sides 1/2 + 5/16 (3 c² - 1). All others, and one light
-    /// alone, are taken for what their bounds say.
-    fn of(items: &[Item]) -> Self {
+    /// alone, are taken for what their bounds say. `power` is that of all together.
+    fn of(items: &[Item], power: f64) -> Self {
         if items.len() < 2 {
             return Self::ANY;
         }
         let mut sum = [0.0; 9];
-        let mut power = 0.0;
         for item in items {
             let weight = f64::from(item.light.power);
-            power += weight;
             let terms = Self::terms(&item.light);
             sum.iter_mut().zip(terms).for_each(|(sum, term)| *sum += weight * term);
         }
@@ -91,7 +89,8 @@ impl Summary {
         const COSINE_SLACK: f64 = 1e-6;
         const EMISSION_SLACK: f32 = 1e-5;
         let bounds = items.iter().fold(Aabb::EMPTY, |sum, item| sum.union(item.light.bounds));
-        let center = center(items);
+        let power = items.iter().map(|item| f64::from(item.light.power)).sum();
+        let center = center(items, power);
         let corner = (bounds.max.as_dvec3() - center.as_dvec3()).max(center.as_dvec3() - bounds.min.as_dvec3());
         let two_sided = items.iter().any(|item| item.light.two_sided);
         let axis = mean_axis(items, two_sided);
@@ -103,20 +102,16 @@ impl Summary {
             axis,
             cos_spread: (cos - COSINE_SLACK).max(-1.0) as f32,
             cos_emission: emission - EMISSION_SLACK,
-            power: items.iter().map(|item| f64::from(item.light.power)).sum::<f64>() as f32,
+            power: power as f32,
             two_sided,
-            facing: Facing::of(items),
+            facing: Facing::of(items, power),
         }
     }
 }
 
 /// The centre of their power.
-fn center(items: &[Item]) -> Vec3 {
-    let (mut sum, mut power) = (DVec3::ZERO, 0.0);
-    for item in items {
-        sum += item.center.as_dvec3() * f64::from(item.light.power);
-        power += f64::from(item.light.power);
-    }
+fn center(items: &[Item], power: f64) -> Vec3 {
+    let sum: DVec3 = items.iter().map(|item| item.center.as_dvec3() * f64::from(item.light.power)).sum();
     (sum / power).as_vec3()
 }
 

@@ -21,9 +21,8 @@ struct Seen<'a> {
 impl Classic {
     /// A vertex whose material is not the classic one.
     pub(super) fn physical(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
-        let mut sampler = path.sampler;
-        let choices = if world.is_simple(vertex) { Vec2::ZERO } else { sampler.at(0).next_2d() };
-        sampler.skip(1);
+        let mut sampler = path.sampler.at(1);
+        let choices = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(0).next_2d() };
         let shade = world.shade(vertex, -ray.direction, 1.0, choices.x);
         let room = path.depth < self.max_depth;
         if shade.opacity < 1.0 && choices.y >= shade.opacity {
