@@ -59,6 +59,15 @@ pub struct RenderArgs {
     #[arg(long, value_name = "LOOK", value_parser = value::look, help_heading = "Output")]
     pub look: Option<Look>,
 
+    /// Layers beside the picture, with commas between: albedo, normal, depth, light_groups, crypto_object ... or `all`. An EXR
+    /// holds them itself, another picture has them beside it (NAME.layers.exr)
+    #[arg(long, value_name = "LIST", help_heading = "Output")]
+    pub aov: Option<String>,
+
+    /// Where the layers go: one .exr, or one .exr or .npy each where the name holds `{}` for the layer's
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub aov_output: Option<String>,
+
     /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub stats: Option<String>,

@@ -1,5 +1,6 @@
 //! What `juggler render` was asked for, from what was typed.
 
+pub mod layers;
 mod parts;
 mod product;
 mod reel;
@@ -36,6 +37,8 @@ pub struct Plan {
     pub output: String,
     /// What it holds.
     pub product: Product,
+    /// Where its layers go, if somebody said.
+    pub layers_output: Option<String>,
     /// The film that the pictures are frames of.
     pub reel: Option<Reel>,
     /// How long rendering may take.
@@ -78,6 +81,8 @@ pub struct Shot {
     pub frame: f64,
     /// The picture's file.
     pub output: String,
+    /// Its layers' file, if somebody said.
+    pub layers_output: Option<String>,
     /// The statistics' file.
     pub stats: Option<String>,
     /// Where its work is kept.
@@ -100,16 +105,18 @@ impl Plan {
             Some(_) => Product::Picture(Encoding::new(None, None, None, &output)?.with_look(args.look)?),
             None => Product::new(&args, &output)?,
         };
+        let aovs = layers::wanted(&args, &output, product, reel.is_some())?;
         let moments = Moments::new(&args, &output, reel.is_some())?;
         let cut = Cut::new(&args, product, matches!(moments, Moments::Frames(_)))?;
         let checkpoint = Checkpoint::new(&args, reel.as_ref())?;
         let shard = Shard::new(args.shard, parts::variable)?;
         let cores = std::thread::available_parallelism().map_or(FALLBACK_THREADS, std::num::NonZero::get);
         Ok(Self {
-            settings: settings(&args, product),
+            settings: Settings { aovs, ..settings(&args, product) },
             scene: args.scene,
             moments,
             output,
+            layers_output: args.aov_output,
             product,
             reel,
             time: args.time.map(Duration::from_secs_f64),
@@ -140,7 +147,9 @@ impl Plan {
 
     /// Whether a picture is made on a film that is kept, not row by row.
     pub fn needs_film(&self, shot: &Shot) -> bool {
-        self.product == Product::Part || shot.checkpoint.is_some() || self.settings.limit != Limit::Samples
+        let is_kept =
+            self.product == Product::Part || shot.checkpoint.is_some() || self.settings.limit != Limit::Samples;
+        is_kept || !self.settings.aovs.is_empty()
     }
 
     /// Whether a picture that is there already, made by the same command from the same scene, is left as it is.
@@ -154,6 +163,7 @@ impl Plan {
         let single = |frame: f64| Shot {
             frame,
             output: self.output.clone(),
+            layers_output: self.layers_output.clone(),
             stats: self.stats.clone(),
             checkpoint: self.checkpoint.as_ref().map(|checkpoint| checkpoint.file.clone()),
             shard: self.shard,
@@ -188,6 +198,7 @@ impl Plan {
         let shot = |frame: u32, shard: Shard| Shot {
             frame: f64::from(frame),
             output: name(&self.output, frame),
+            layers_output: layers::numbered(self.layers_output.as_deref(), frame),
             stats: self.stats.as_deref().map(|stats| name(stats, frame)),
             checkpoint: self.checkpoint.as_ref().map(|checkpoint| name(&checkpoint.file, frame)),
             shard,
@@ -222,6 +233,8 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         crop: if product == Product::Part { None } else { args.crop },
         curve: args.tone.clone(),
         exposure_stops: args.exposure,
+        aovs: Vec::new(),
+        guides: false,
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::plan::{Moments, Plan, Shot};
 use juggler::imaging::{Look, Options, SampleDepth};
 use juggler::tracer::film::Rect;
-use juggler::{Limit, Settings};
+use juggler::{Aov, Limit, Settings};
 use std::fmt::Display;
 
 /// In a command, the file that carries it.
@@ -28,6 +28,8 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         crop,
         curve,
         exposure_stops,
+        aovs,
+        guides: _,
     } = &plan.settings;
     let Options { png_16_bit, jpeg_quality, exr_depth, look, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
@@ -50,9 +52,15 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--tone", curve.as_deref().map(quoted));
     words.flag("--exposure", *exposure_stops);
     words.flag("--look", Some(look.name()).filter(|_| look != Look::Plain));
+    words.flag("--aov", Some(list(aovs)).filter(|_| !aovs.is_empty()));
     words.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
     words.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
     words.0
+}
+
+fn list(aovs: &[Aov]) -> String {
+    let names: Vec<&str> = aovs.iter().map(|aov| aov.name()).collect();
+    names.join(",")
 }
 
 /// A command as the file tells it that carries it.

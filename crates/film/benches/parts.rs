@@ -5,7 +5,7 @@
 use juggler::prelude::*;
 use juggler::tracer::film::{BLOCK, Layout, Rect, Run, Sum, Tile};
 use juggler_film::share::Work;
-use juggler_film::{Chunk, Description, Merge, Part, PartError, Share, Stop, Wanted, write};
+use juggler_film::{Chunk, Description, Layered, Merge, Part, PartError, Share, Stop, Wanted, write};
 use juggler_raybench::clock::{Of, Stopwatch};
 use std::error::Error;
 use std::hint::black_box;
@@ -32,7 +32,7 @@ fn film(name: &str, blocks: u32) -> Result<Vec<Tile>, Box<dyn Error>> {
             let pixels = (0..tile.pixels().area() as u32).filter_map(|pixel| image.pixels().get(place(pixel) as usize));
             let sum = |mean: &Rgb| (*mean * BLOCK as f32).to_array().map(f64::from);
             let sums = pixels.map(|mean| Sum { total: sum(mean), ..Sum::default() }).collect();
-            tile.add(Run { samples: block * BLOCK..(block + 1) * BLOCK, sums })?;
+            tile.add(Run::new(block * BLOCK..(block + 1) * BLOCK, sums))?;
         }
     }
     Ok(tiles)
@@ -49,6 +49,7 @@ fn description(samples: u32, share: Share) -> Description {
         samples,
         stop: Stop::Samples,
         clamped: false,
+        layers: Layered::default(),
         share,
         finished: true,
         fingerprint: Default::default(),

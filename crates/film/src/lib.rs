@@ -17,4 +17,6 @@ mod testing;
 
 pub use checkpoint::{Checkpoint, Found, ResumeError, resume};
 pub use merge::{Complaint, Merge, MergeError, ToDo, Wanted};
-pub use part::{Chunk, Description, Mismatch, Part, PartError, PartWriter, Reader, Share, Stop, is_part, write};
+pub use part::{
+    Chunk, Description, Layered, Mismatch, Part, PartError, PartWriter, Reader, Share, Stop, is_part, write,
+};

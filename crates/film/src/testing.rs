@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "only tests use it")]
 
-use crate::{Description, Share, Stop};
+use crate::{Description, Layered, Share, Stop};
 use juggler_math::{Rgb, hash};
-use juggler_tracer::film::{Accumulator, Layout, Rect, Run, Sum, Tile, runs};
+use juggler_tracer::film::{Accumulator, Layout, Rect, Run, Samples, Sum, Tile, runs};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -20,6 +20,7 @@ pub fn description(region: Rect, samples: u32) -> Description {
         samples,
         stop: Stop::Samples,
         clamped: false,
+        layers: Layered::default(),
         share: Share::whole(samples),
         finished: true,
         fingerprint: [("scene", "5ce4e"), ("seed", "7")].map(|(k, v)| (k.to_owned(), v.to_owned())).into(),
@@ -46,13 +47,14 @@ pub fn clamped_tile(pixels: Rect, samples: Range<u32>) -> Tile {
 
 fn exposed(pixels: Rect, samples: Range<u32>, lost: impl Fn(&Rgb) -> Option<f32>) -> Tile {
     let mut tile = Tile::new(pixels);
-    let mut parts: Vec<Run> = runs(samples.clone()).into_iter().map(|samples| Run { samples, sums: vec![] }).collect();
+    let mut parts: Vec<Run> = runs(samples.clone()).into_iter().map(|samples| Run::new(samples, vec![])).collect();
     for pixel in 0..pixels.area() as u32 {
         let (x, y) = (pixels.x + pixel % pixels.width, pixels.y + pixel / pixels.width);
         let mut accumulator = Accumulator::default();
         accumulator.begin(samples.start, None);
         let radiance: Vec<Rgb> = samples.clone().map(|index| sample(x, y, index)).collect();
-        accumulator.add_clamped(&radiance, &radiance.iter().filter_map(&lost).collect::<Vec<_>>());
+        let clamped: Vec<f32> = radiance.iter().filter_map(&lost).collect();
+        accumulator.add_samples(Samples { radiance: &radiance, clamped: &clamped, ..Samples::default() });
         let sums: Vec<Sum> = accumulator.sums().collect();
         parts.iter_mut().zip(sums).for_each(|(run, sum)| run.sums.push(sum));
     }

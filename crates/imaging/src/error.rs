@@ -12,6 +12,12 @@ pub enum ImageError {
         /// The file.
         place: String,
     },
+    /// The user names the file differently.
+    #[error("{place}: layers go into one .exr, or one .exr or .npy each where the name holds `{{}}` for theirs")]
+    Layers {
+        /// The file.
+        place: String,
+    },
     /// The user picks another format or size.
     #[error("a {format} file cannot be {width} × {height} pixels: each side is 1 to {most}")]
     Dimensions {

@@ -7,6 +7,7 @@
 //! - [`tone`]: from linear light to levels of 8 or 16 bits;
 //! - [`look`]: what may be done with the levels of a whole picture;
 //! - [`codec`]: one file per format, writer and reader;
+//! - [`layered`]: files of many layers;
 //! - [`animation`]: files of moving pictures;
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
 //! - [`input`]: from a file to an image;
@@ -20,6 +21,7 @@ pub mod compare;
 mod error;
 pub mod format;
 pub mod input;
+pub mod layered;
 pub mod look;
 pub mod output;
 pub mod raster;

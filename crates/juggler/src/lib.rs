@@ -16,6 +16,7 @@
 //! - [`Scene`](scene::Scene) is built here or loaded from a file,
 //! - [`Settings`] say what is wanted beyond what the scene says,
 //! - [`render()`] makes an image in memory, [`render_to_file`] a file of any size,
+//! - [`layers`] are what can be asked for beside the picture,
 //! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards.
 //!
 //! Rendering uses the current rayon thread pool. The crates behind: [`math`], [`tracer`], [`scene`],
@@ -23,6 +24,7 @@
 
 mod error;
 mod kinds;
+pub mod layers;
 pub mod memory;
 mod part;
 mod picture;
@@ -36,6 +38,7 @@ pub use juggler_math as math;
 pub use juggler_scene as scene;
 pub use juggler_tracer as tracer;
 pub use kinds::{by_name, check_name, names};
+pub use layers::{Aov, LayerSet};
 pub use part::Origin;
 pub use picture::{Outcome, Picture, View, render, render_to_file};
 pub use settings::{Limit, Settings};

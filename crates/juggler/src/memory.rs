@@ -1,10 +1,11 @@
 //! How much memory a render takes, told before it starts; and how it takes less.
 
-use crate::{Error, Picture, Settings};
-use juggler_scene::Scene;
+use crate::{Error, LayerSet, Picture, Settings};
 use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
 use juggler_scene::import;
-use juggler_tracer::film::{Film, Rect, TILE};
+use juggler_scene::{Names, Scene};
+use juggler_tracer::film::{Extras, Film, Rect, TILE};
+use juggler_tracer::layer::Layers;
 use juggler_tracer::render::{self, BAND_PIXELS};
 use std::ops::Range;
 
@@ -69,6 +70,8 @@ pub struct Memory {
     samples: u32,
     /// Whether rows go straight to the file.
     in_bands: bool,
+    /// What a film keeps beside radiance.
+    layers: Layers,
 }
 
 impl Memory {
@@ -104,6 +107,7 @@ impl Memory {
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),
             in_bands: true,
+            layers: LayerSet::new(&settings.aovs, settings.guides, &Names::of(&scene.description)).layers().clone(),
         })
     }
 
@@ -141,7 +145,8 @@ impl Memory {
         let dealing = tiles.max(16 * shards).saturating_mul(UNIT);
         let row = u64::from(self.region.width) * u64::from(TILE) * 16;
         self.in_bands = false;
-        self.and("the film", Film::bytes(pixels, runs).saturating_add(dealing).saturating_add(row))
+        let film = Film::bytes(pixels, runs, Extras::bytes_a_pixel(self.layers.planes.len(), self.layers.masks));
+        self.and("the film", film.saturating_add(dealing).saturating_add(row))
     }
 
     /// The pixels of the whole picture.

@@ -2,9 +2,10 @@
 
 use crate::{Error, Limit, Picture};
 use juggler_film::part::{Description, Share, Stop};
+use juggler_imaging::layered::LayeredWriter;
 use juggler_imaging::{Header, RowWriter};
 use juggler_math::Rgb;
-use juggler_tracer::film::{Digest, Film, Layout, Summary};
+use juggler_tracer::film::{Digest, Film, Layout, Summary, Tile};
 use juggler_tracer::render::{self, Control, Stopped};
 
 /// What made a picture, besides what the picture knows of itself.
@@ -63,6 +64,16 @@ impl Picture {
         Ok(summary)
     }
 
+    /// Writes the layers of a film, after the picture itself if `writer` is to hold that.
+    pub fn write_layers(&self, film: &Film, mut writer: LayeredWriter, with_picture: bool) -> Result<(), Error> {
+        let layout = film.layout();
+        for (row, band) in (0..).zip(layout.bands()) {
+            let tiles: Vec<Tile> = layout.in_band(row).filter_map(|number| film.tile_of(number)).collect();
+            writer.write_rows(&self.layers().band(&band, &tiles, with_picture))?;
+        }
+        Ok(writer.finish()?)
+    }
+
     /// What ends it, as film parts say it.
     pub fn end(&self) -> Stop {
         match *self.limit() {
@@ -85,6 +96,7 @@ impl Picture {
             samples: self.samples(),
             stop: self.end(),
             clamped: self.is_clamped(),
+            layers: self.layers().to_part(),
             share,
             finished: false,
             fingerprint: self.fingerprint().parts().clone(),

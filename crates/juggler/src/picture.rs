@@ -1,6 +1,6 @@
 //! One picture, from the scene to the file: what the program, Rust and all other users share.
 
-use crate::{Error, Limit, Settings};
+use crate::{Error, LayerSet, Limit, Settings};
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
 use juggler_scene::description::Render;
@@ -29,6 +29,7 @@ pub struct Picture {
     /// The scene's part of it.
     of_scene: Fingerprint,
     band_pixels: u64,
+    layers: Arc<LayerSet>,
 }
 
 /// From where a world is looked at, and how: all that can change without building it anew.
@@ -79,7 +80,9 @@ impl Picture {
         let (tone, limit, mut of_scene) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
         of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
-        let mut picture = Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels: BAND_PIXELS };
+        let layers = Arc::new(LayerSet::new(&settings.aovs, settings.guides, &compiled.names));
+        let band_pixels = BAND_PIXELS;
+        let mut picture = Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels, layers };
         picture.complete_fingerprint();
         Ok(picture)
     }
@@ -134,6 +137,7 @@ impl Picture {
             && a.filter == b.filter
             && self.compiled.settings.integrator == other.compiled.settings.integrator
             && (a.samples == 1) == (b.samples == 1)
+            && a.layers == b.layers
     }
 
     /// The same picture for another vector unit than the best of this machine: for tests and measurements.
@@ -224,6 +228,11 @@ impl Picture {
         Header { tone: self.tone.clone(), options, metadata, ..Header::new(width, height) }
     }
 
+    /// What is asked for beside it.
+    pub fn layers(&self) -> &LayerSet {
+        &self.layers
+    }
+
     /// The engine's view of it.
     pub fn job(&self) -> Job<'_> {
         let settings = &self.compiled.settings;
@@ -236,6 +245,7 @@ impl Picture {
             pattern: settings.sampler.pattern(samples),
             samples,
             seed: settings.seed,
+            layers: self.layers.layers(),
         }
     }
 

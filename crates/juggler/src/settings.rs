@@ -1,7 +1,7 @@
 //! What a picture is asked for beyond what its scene says.
 
-use crate::Error;
 use crate::kinds::{by_name, check_name};
+use crate::{Aov, Error};
 use juggler_imaging::Tone;
 use juggler_scene::Scene;
 use juggler_scene::description::{CameraName, Render};
@@ -84,6 +84,10 @@ pub struct Settings {
     pub curve: Option<String>,
     /// Photographic stops, likewise: each doubles the light.
     pub exposure_stops: Option<f32>,
+    /// What is asked for beside the picture.
+    pub aovs: Vec<Aov>,
+    /// Whether the film keeps what denoising is guided by.
+    pub guides: bool,
 }
 
 impl Settings {

@@ -203,8 +203,9 @@ impl Scene {
         if broken {
             return Err(SceneError::Problems(warnings));
         }
-        let (world, settings) = (Arc::clone(&earlier.world), self.description.render.clone());
-        Ok(Compiled { world, cameras, course, settings, warnings })
+        let (world, names) = (Arc::clone(&earlier.world), Arc::clone(&earlier.names));
+        let settings = self.description.render.clone();
+        Ok(Compiled { world, cameras, course, settings, warnings, names })
     }
 
     /// Whether the same stands in both, however it is looked at. Files are compared by their contents.
@@ -218,6 +219,7 @@ impl Scene {
             Arc::ptr_eq(&a, &b) || placed(&a) == placed(&b)
         };
         (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
+            && a.background_light_group == b.background_light_group
             && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
             && digests(a, &self.files()) == digests(b, &other.files())
             && same_motion()

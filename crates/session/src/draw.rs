@@ -6,6 +6,7 @@ use juggler::Picture;
 use juggler::math::{Ray, UVec2};
 use juggler::tracer::film::Rect;
 use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, PathState};
+use juggler::tracer::layer::LightGroup;
 use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stopped};
 use juggler::tracer::world::{Vertex, World};
 
@@ -21,7 +22,7 @@ impl Integrator for Numbers {
             Self::Objects => vertex.object,
             Self::Materials => vertex.material.0,
         };
-        emit.add(color_of(number));
+        emit.add(color_of(number), LightGroup::REST);
     }
 }
 

@@ -10,7 +10,7 @@
 //! 8. [`light`]s say what arrives there, on some ways by polished balls ([`manifold`]), the [`background`] what a ray that
 //!    leaves the world sees;
 //! 9. an [`integrator`] says what the point adds, and which rays go on;
-//! 10. the [`film`] sums, and [`render`] drives it all on every core.
+//! 10. the [`film`] sums it, with what else is asked for ([`layer`]), and [`render`] drives it all on every core.
 //!
 //! This crate opens no file, reads no clock, no environment variable, and shows no window.
 
@@ -23,6 +23,7 @@ pub mod camera;
 pub mod emitter;
 pub mod film;
 pub mod integrator;
+pub mod layer;
 pub mod light;
 pub mod manifold;
 pub mod material;

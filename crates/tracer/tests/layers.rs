@@ -10,6 +10,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("camera", &[]),
     ("sampler", &[]),
     ("film", &[]),
+    ("layer", &[]),
     ("bsdf", &[]),
     ("emitter", &[]),
     ("medium", &[]),
@@ -20,9 +21,15 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("texture", &["surface"]),
     ("light", &["emitter", "shape", "texture"]),
     ("material", &["surface", "texture", "bsdf", "medium"]),
-    ("world", &["shape", "surface", "medium", "manifold", "material", "bsdf", "emitter", "light", "background"]),
-    ("integrator", &["world", "surface", "manifold", "material", "medium", "bsdf", "light", "sampler"]),
-    ("render", &["camera", "sampler", "integrator", "world", "film"]),
+    (
+        "world",
+        &["shape", "surface", "medium", "manifold", "material", "bsdf", "emitter", "light", "background", "layer"],
+    ),
+    (
+        "integrator",
+        &["world", "surface", "manifold", "material", "medium", "bsdf", "light", "sampler", "film", "layer"],
+    ),
+    ("render", &["camera", "sampler", "integrator", "world", "film", "layer"]),
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

@@ -4,10 +4,13 @@ use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, clamping, counted, duration};
 use crate::output::{self, STANDARD_OUTPUT};
+use crate::plan::layers::{self, Place};
 use crate::plan::{Encoding, PART_ENDING};
 use crate::stats::Clamped;
 use clap::Args;
+use juggler::LayerSet;
 use juggler::film::{self, Description, Wanted};
+use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{self, Header, Tone};
 use juggler::tracer::film::Summary;
 use serde_json::json;
@@ -32,6 +35,10 @@ pub struct Merge {
     /// Quality of a JPEG
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: Option<u8>,
+    /// Where layers go that the parts keep: one .exr, or one .exr or .npy each where the name holds `{}` for the layer's. Without
+    /// it an EXR holds them itself, another picture has them beside it (NAME.layers.exr)
+    #[arg(long, value_name = "FILE")]
+    aov_output: Option<String>,
     /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     stats: Option<String>,
@@ -81,13 +88,47 @@ impl Merge {
         let tone: Tone = serde_json::from_value(tone.clone())
             .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
         let header = Header { tone, options, metadata: metadata.clone(), ..Header::new(region.width, region.height) };
+        let mut layers = self.layers(merge.description(), &header)?;
+        let with_picture = layers.as_ref().is_some_and(|(_, _, with_picture)| *with_picture);
         let mut writer = match self.output.as_str() {
-            STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
-            file => imaging::create(Path::new(file), format, &header)?,
+            _ if with_picture => None,
+            STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
+            file => Some(imaging::create(Path::new(file), format, &header)?),
         };
-        let summary = merge.rows(|rows| Ok::<(), Failure>(writer.write_rows(rows)?))?;
-        writer.finish()?;
+        let summary = merge.rows_of_tiles(|band, tiles, rows| {
+            if let Some((set, writer, with_picture)) = &mut layers {
+                writer.write_rows(&set.band(band, tiles, *with_picture))?;
+            }
+            Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
+        })?;
+        writer.map_or(Ok(()), |writer| writer.finish())?;
+        layers.map_or(Ok(()), |(_, writer, _)| writer.finish())?;
         Ok(summary)
+    }
+
+    /// The layers that the parts keep, and their file; whether the picture is in it.
+    fn layers(
+        &self,
+        picture: &Description,
+        header: &Header,
+    ) -> Result<Option<(LayerSet, LayeredWriter, bool)>, Failure> {
+        let set = LayerSet::of_part(&picture.layers)?;
+        if set.wanted().is_empty() {
+            return match &self.aov_output {
+                Some(_) => {
+                    Err(Failure::Wrong("--aov-output: the parts keep no layers (`juggler render --aov`)".into()))
+                }
+                None => Ok(None),
+            };
+        }
+        let place = layers::place(&self.output, self.aov_output.as_deref());
+        let (file, with_picture) = match &place {
+            Place::InPicture => (self.output.as_str(), true),
+            Place::File(_) if self.aov_output.is_none() && self.output == STANDARD_OUTPUT => return Ok(None),
+            Place::File(file) => (file.as_str(), false),
+        };
+        let writer = LayeredWriter::create(Path::new(file), &set.file_header(header, with_picture))?;
+        Ok(Some((set, writer, with_picture)))
     }
 
     fn report(&self, picture: &Description, made: &Made, start: Instant) -> Result<(), Failure> {

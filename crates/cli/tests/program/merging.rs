@@ -2,7 +2,7 @@
 
 use crate::harness::Folder;
 use juggler::film::share::Work;
-use juggler::film::{Description, Share, Stop, write};
+use juggler::film::{Description, Layered, Share, Stop, write};
 use juggler::imaging::Tone;
 use juggler::math::Rgb;
 use juggler::tracer::film::{Accumulator, Rect, Run, Tile, runs};
@@ -21,6 +21,7 @@ fn description() -> Description {
         samples: SAMPLES,
         stop: Stop::Samples,
         clamped: false,
+        layers: Layered::default(),
         share: Share::whole(SAMPLES),
         finished: true,
         fingerprint: [("seed".to_owned(), "7".to_owned())].into(),
@@ -46,7 +47,7 @@ fn share(folder: &Folder, index: u32, count: u32, change: impl Fn(&mut Descripti
                 accumulator.sums().next().unwrap()
             };
             let sums = (0..tile.pixels().area() as u32).map(sum).collect();
-            tile.add(Run { samples, sums }).unwrap();
+            tile.add(Run::new(samples, sums)).unwrap();
         }
         (number, tile)
     };

@@ -51,14 +51,22 @@ impl Merge {
     /// Hands the picture's rows to `rows`, from top to bottom, some whole rows at a time. Pixels of which nothing is
     /// there are black.
     pub fn rows<E: From<PartError>>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<Summary, E> {
+        self.rows_of_tiles(|_, _, pixels| rows(pixels))
+    }
+
+    /// The same with each row's band and the tiles that it is made of.
+    pub fn rows_of_tiles<E: From<PartError>>(
+        &self,
+        mut rows: impl FnMut(&Rect, &[Tile], &[Rgb]) -> Result<(), E>,
+    ) -> Result<Summary, E> {
         let layout = self.description.layout();
         let mut digest = Digest::new(layout.region().width, layout.region().height);
         self.bands(|_, tiles| {
             for tiles in tiles.chunks((layout.columns() as usize).max(1)) {
-                let pixels = row_of_tiles(&layout, tiles);
+                let (band, pixels) = row_of_tiles(&layout, tiles);
                 digest.clamp(tiles.iter().map(Tile::clamped).sum());
                 digest.update(&pixels);
-                rows(&pixels)?;
+                rows(&band, tiles, &pixels)?;
             }
             Ok::<(), E>(())
         })?;
@@ -107,12 +115,11 @@ impl Merge {
     }
 }
 
-/// The pixels of tiles side by side, row by row.
-fn row_of_tiles(layout: &Layout, tiles: &[Tile]) -> Vec<Rgb> {
-    let Some(first) = tiles.first() else { return Vec::new() };
-    let Rect { x, width, .. } = layout.region();
-    let band = Rect { x, width, ..first.pixels() };
+/// The pixels of tiles side by side, row by row, and where they are.
+fn row_of_tiles(layout: &Layout, tiles: &[Tile]) -> (Rect, Vec<Rgb>) {
+    let Rect { x, y, width, .. } = layout.region();
+    let band = tiles.first().map_or(Rect { x, y, width, height: 0 }, |first| Rect { x, width, ..first.pixels() });
     let mut pixels = vec![Rgb::BLACK; band.area() as usize];
     tiles.iter().for_each(|tile| tile.copy_to(&band, &mut pixels));
-    pixels
+    (band, pixels)
 }

@@ -1,6 +1,7 @@
 //! The bytes of one tile: its runs, each with its samples' range and its packed sums.
 
 use super::Description;
+use super::layers;
 use super::pack::{pack, unpack};
 use juggler_tracer::film::{Rect, Run, Tile};
 
@@ -31,6 +32,7 @@ impl Chunk {
             // A tile's sums are a few kilobytes.
             bytes.extend_from_slice(&(packed.len() as u32).to_le_bytes());
             bytes.extend_from_slice(&packed);
+            bytes.extend_from_slice(&layers::pack(&run.extras, run.sums.len()));
         }
         let hash = *blake3::hash(&bytes).as_bytes();
         Self { pixels: tile.pixels(), runs: tile.runs().len(), clamped, bytes, hash }
@@ -39,7 +41,7 @@ impl Chunk {
 
 /// The tile that a chunk's bytes describe, for this picture; or what is wrong with them.
 pub(super) fn decode(mut bytes: &[u8], pixels: Rect, picture: &Description) -> Result<Tile, String> {
-    let Description { samples, clamped, .. } = *picture;
+    let Description { samples, clamped, layers: ref kept, .. } = *picture;
     let mut tile = Tile::new(pixels);
     let mut runs = 0;
     while !bytes.is_empty() {
@@ -56,7 +58,9 @@ pub(super) fn decode(mut bytes: &[u8], pixels: Rect, picture: &Description) -> R
             return Err(format!("it has samples up to {}, its picture {samples}", range.end));
         }
         let sums = unpack(packed, pixels.area() as usize, clamped).ok_or("packed sums cannot be unpacked")?;
-        tile.add(Run { samples: range, sums }).map_err(|error| error.to_string())?;
+        let unpacked = layers::unpack(rest, sums.len(), kept);
+        let (extras, rest) = unpacked.ok_or("packed layers cannot be unpacked")?;
+        tile.add(Run { samples: range, sums, extras }).map_err(|error| error.to_string())?;
         bytes = rest;
     }
     Ok(tile)

@@ -65,6 +65,40 @@ impl Share {
     }
 }
 
+/// What a picture keeps beside radiance, and the names of what that tells apart.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Layered {
+    /// What was asked for, by name.
+    pub wanted: Vec<String>,
+    /// Colours that are kept of each sample.
+    pub planes: u32,
+    /// Whether it is kept how much of a pixel shows which thing.
+    pub masks: bool,
+    /// Names of the scene's objects, in order.
+    #[serde(default)]
+    pub objects: Vec<String>,
+    /// Numbers and names of materials.
+    #[serde(default)]
+    pub materials: Vec<(u32, String)>,
+    /// Names of groups of lights, in order.
+    #[serde(default)]
+    pub light_groups: Vec<String>,
+}
+
+impl Layered {
+    /// Whether nothing is kept.
+    pub fn is_empty(&self) -> bool {
+        self.wanted.is_empty() && self.planes == 0 && !self.masks
+    }
+}
+
+impl std::fmt::Display for Layered {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.wanted.join(","))
+    }
+}
+
 /// What a part says about itself and the picture that it belongs to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -89,6 +123,9 @@ pub struct Description {
     /// Whether what is too bright is dimmed; then tiles say what that took away.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub clamped: bool,
+    /// What is kept beside radiance.
+    #[serde(default, skip_serializing_if = "Layered::is_empty")]
+    pub layers: Layered,
     /// Which part of the picture this was to become.
     pub share: Share,
     /// Whether it became that: the picture's rule to stop holds for every tile of the share.
@@ -133,6 +170,7 @@ impl Description {
         compare("samples", self.samples.to_string(), other.samples.to_string());
         compare("clamped", self.clamped.to_string(), other.clamped.to_string());
         compare("stop", self.stop.to_string(), other.stop.to_string());
+        compare("layers", self.layers.to_string(), other.layers.to_string());
         let names =
             self.fingerprint.keys().chain(other.fingerprint.keys().filter(|k| !self.fingerprint.contains_key(*k)));
         for name in names {

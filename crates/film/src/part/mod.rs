@@ -4,6 +4,7 @@ mod chunk;
 mod description;
 mod error;
 mod format;
+mod layers;
 mod pack;
 mod read;
 #[cfg(test)]
@@ -11,7 +12,7 @@ mod tests;
 mod write;
 
 pub use chunk::Chunk;
-pub use description::{Description, Mismatch, Share, Stop};
+pub use description::{Description, Layered, Mismatch, Share, Stop};
 pub use error::PartError;
 pub use read::{Part, Reader, is_part};
 pub use write::{PartWriter, write};

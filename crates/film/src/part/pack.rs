@@ -7,6 +7,7 @@
 //! idea of Masui and others, "A compression scheme for radio data in high performance computing", 2015). Planes of
 //! bytes and slower compressors were measured too: docs/benchmarks.md.
 
+use juggler_math::Rgb;
 use juggler_tracer::film::Sum;
 
 /// Channels of a sum.
@@ -22,12 +23,13 @@ pub(super) fn pack(sums: &[Sum], clamped: bool) -> Vec<u8> {
     let mut planes = vec![0; plane * bits(clamped)];
     let (totals, rest) = planes.split_at_mut(plane * TOTAL);
     let (spreads, taken) = rest.split_at_mut(plane * SINGLE);
-    to_planes(differences(sums, TOTAL, |sum, channel| sum.total[channel].to_bits()), totals);
-    to_planes(differences(sums, SINGLE, |sum, channel| sum.spread[channel].to_bits().into()), spreads);
+    let count = sums.len();
+    to_planes(differences(count, TOTAL, |pixel, channel| sums[pixel].total[channel].to_bits()), totals);
+    to_planes(differences(count, SINGLE, |pixel, channel| sums[pixel].spread[channel].to_bits().into()), spreads);
     if clamped {
         // Of one channel only: the others' places stay empty.
-        let first = |sum: &Sum, channel| if channel == 0 { sum.clamped.to_bits().into() } else { 0 };
-        to_planes(differences(sums, SINGLE, first), taken);
+        let first = |pixel: usize, channel| if channel == 0 { sums[pixel].clamped.to_bits().into() } else { 0 };
+        to_planes(differences(count, SINGLE, first), taken);
     }
     lz4_flex::block::compress(&planes)
 }
@@ -69,15 +71,38 @@ fn plane(pixels: usize) -> usize {
     (pixels * CHANNELS).div_ceil(64) * 8
 }
 
+/// One colour of each of some pixels, packed.
+pub(super) fn pack_colors(colors: &[Rgb]) -> Vec<u8> {
+    let mut planes = vec![0; plane(colors.len()) * SINGLE];
+    let bits = |pixel: usize, channel: usize| colors[pixel].to_array()[channel].to_bits().into();
+    to_planes(differences(colors.len(), SINGLE, bits), &mut planes);
+    lz4_flex::block::compress(&planes)
+}
+
+/// The way back from [`pack_colors`] for so many pixels; `None` when the bytes hold something else.
+pub(super) fn unpack_colors(packed: &[u8], pixels: usize) -> Option<Vec<Rgb>> {
+    let plane = plane(pixels);
+    let mut planes = vec![0; plane * SINGLE];
+    let length = lz4_flex::block::decompress_into(packed, &mut planes).ok()?;
+    if length != planes.len() {
+        return None;
+    }
+    let mut colors = vec![[0.0; CHANNELS]; pixels];
+    restore(&mut colors, &from_planes(&planes, plane), |color, channel, bits| {
+        color[channel] = f32::from_bits(bits as u32);
+    });
+    Some(colors.into_iter().map(Rgb::from).collect())
+}
+
 /// Channel after channel, each pixel's bits less those of the pixel before: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
-fn differences(sums: &[Sum], width: usize, bits: impl Fn(&Sum, usize) -> u64) -> Vec<u64> {
+fn differences(count: usize, width: usize, bits: impl Fn(usize, usize) -> u64) -> Vec<u64> {
     let unused = 64 - width;
-    let values = plane(sums.len()) * 8;
+    let values = plane(count) * 8;
     let mut differences = Vec::with_capacity(values);
     for channel in 0..CHANNELS {
         let mut previous = 0;
-        differences.extend(sums.iter().map(|sum| {
-            let bits = bits(sum, channel);
+        differences.extend((0..count).map(|pixel| {
+            let bits = bits(pixel, channel);
             let difference = (bits.wrapping_sub(previous) << unused).cast_signed() >> unused;
             previous = bits;
             ((difference << 1) ^ (difference >> 63)).cast_unsigned()
@@ -88,7 +113,7 @@ fn differences(sums: &[Sum], width: usize, bits: impl Fn(&Sum, usize) -> u64) ->
 }
 
 /// The way back from [`differences`].
-fn restore(sums: &mut [Sum], differences: &[u64], put: impl Fn(&mut Sum, usize, u64)) {
+fn restore<T>(sums: &mut [T], differences: &[u64], put: impl Fn(&mut T, usize, u64)) {
     for (channel, differences) in differences.chunks(sums.len().max(1)).take(CHANNELS).enumerate() {
         let mut bits = 0u64;
         for (sum, value) in sums.iter_mut().zip(differences) {

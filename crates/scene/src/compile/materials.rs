@@ -1,5 +1,6 @@
 //! Materials: compiled once each, mistakes charged to the place where they stand.
 
+use super::labels::Names;
 use super::meshes::Files;
 use crate::description::Description;
 use crate::path::{Path, Trail};
@@ -61,8 +62,11 @@ impl Materials {
         self.glows
     }
 
-    /// All that was compiled; nothing when a named material is wrong.
-    pub fn finish(self, findings: &mut Vec<Finding>) -> MaterialTable {
+    /// All that was compiled, and its names; nothing when a named material is wrong.
+    pub fn finish(self, names: &mut Names, findings: &mut Vec<Finding>) -> MaterialTable {
+        let named = self.compiler.compiled().map(|(name, id)| (id, name.to_owned()));
+        names.materials = named.collect();
+        names.materials.sort_by_key(|(id, _)| id.0);
         self.compiler.finish().unwrap_or_else(|errors| {
             for (name, error) in errors {
                 findings.extend(finding(&error, &Path::root().key("materials").key(name)));

@@ -8,13 +8,14 @@ use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
 use juggler_tracer::integrator::AnyIntegrator;
 use juggler_tracer::material::MaterialTable;
-use juggler_tracer::world::{Lamp, Object, World};
+use juggler_tracer::world::{Labels, Lamp, Object, World};
 use std::sync::Arc;
 
 mod count;
 mod course;
 mod defaults;
 mod images;
+mod labels;
 mod lighting;
 mod locate;
 mod materials;
@@ -27,6 +28,7 @@ mod shelf;
 pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
 pub(crate) use images::pictures;
 pub use images::{Estimate, MAX_SIDE, MAX_TEXELS, estimate as estimate_picture};
+pub use labels::{Names, REST};
 pub(crate) use lighting::files as light_files;
 pub use lighting::{Purpose, estimate as estimate_panorama};
 pub use locate::Part;
@@ -47,6 +49,8 @@ pub struct Compiled {
     pub settings: Render,
     /// What people should know about the scene.
     pub warnings: Problems,
+    /// Names of what masks and layers tell apart.
+    pub names: Arc<Names>,
 }
 
 /// Everything of a [`World`] but its hierarchy, which takes time to build.
@@ -63,6 +67,10 @@ pub struct Assembly {
     pub cameras: Vec<(String, AnyCamera)>,
     /// As [`Compiled::course`].
     pub course: Vec<AnyCamera>,
+    /// What belongs together.
+    pub labels: Labels,
+    /// As [`Compiled::names`].
+    pub names: Names,
 }
 
 impl Compiled {
@@ -89,34 +97,39 @@ impl Assembly {
         settings::check_lights(scene, &sources, &mut findings);
         let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
-        let objects = match count::count(scene) {
+        let mut names = Names::of(scene);
+        let (objects, entries) = match count::count(scene) {
             Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
             Err(problems) => {
                 findings.extend(problems);
-                Vec::new()
+                (Vec::new(), Vec::new())
             }
         };
         let lit =
             !scene.lights.is_empty() || materials.glows() || background.as_ref().is_some_and(|b| lights(scene, b));
         let bounds = bounds(&objects);
         let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
-        let lights = if lit {
+        let mut lights: Vec<Lamp> = if lit {
             // What is wrong with files has been said.
             let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
             course::lamps(&sources, &moments.iter().map(loaded).collect::<Vec<_>>())
         } else {
             defaults::lights(&bounds).into_iter().map(Lamp::from).collect()
         };
+        if lit {
+            names.mark(&mut lights, &sources);
+        }
+        let labels = names.labels(scene, entries);
         let background = background.unwrap_or_else(|| defaults::background(lit));
-        let materials = materials.finish(&mut findings);
-        (Self { objects, materials, lights, background, cameras, course }, findings)
+        let materials = materials.finish(&mut names, &mut findings);
+        (Self { objects, materials, lights, background, cameras, course, labels, names }, findings)
     }
 
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
-        let world = World::new(self.objects, self.materials, self.lights, self.background);
-        let (cameras, course) = (self.cameras, self.course);
-        Compiled { world: Arc::new(world), cameras, course, settings, warnings }
+        let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
+        let (cameras, course, names) = (self.cameras, self.course, Arc::new(self.names));
+        Compiled { world: Arc::new(world), cameras, course, settings, warnings, names }
     }
 }
 

@@ -13,7 +13,7 @@ use juggler_tracer::world::{self, Content as Placed, Level};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// All objects of a scene whose groups were counted. Where `moments` of the time that the shutter is open say otherwise
+/// All objects of a scene whose groups were counted, and of each entry of the scene the number of its first shape. Where `moments` of the time that the shutter is open say otherwise
 /// than the scene, they move.
 pub fn place(
     scene: &Description,
@@ -22,7 +22,7 @@ pub fn place(
     files: Files<'_>,
     materials: &mut Materials,
     findings: &mut Vec<Finding>,
-) -> Vec<world::Object> {
+) -> (Vec<world::Object>, Vec<u32>) {
     let mut preparing = Preparing { files, materials, findings };
     let groups = Trail::Root.key("groups");
     let groups = scene
@@ -44,11 +44,13 @@ pub fn place(
         let objects = placing.objects(placing.groups.get(name).map(Vec::as_slice).unwrap_or_default(), None);
         placing.levels.insert(name, Arc::new(Level::new(objects)));
     }
-    placing.objects(&top, Some(plain))
+    placing.entries(&top, scene.objects.len(), plain)
 }
 
 /// An object whose shapes are prepared and whose names are looked up.
 struct Prepared<'s> {
+    /// Its place in its list.
+    index: usize,
     motion: Motion,
     material: Option<MaterialId>,
     content: Content<'s>,
@@ -73,7 +75,7 @@ impl Preparing<'_> {
         let object = |(i, object): (usize, &'s Object)| {
             let at: Vec<&Object> = moments.iter().filter_map(|at| at.get(i)).collect();
             let at = if at.iter().all(|other| *other == object) { &[] } else { at.as_slice() };
-            self.object(object, at, &path.index(i))
+            Some(Prepared { index: i, ..self.object(object, at, &path.index(i))? })
         };
         let visible = objects.iter().enumerate().filter(|(_, object)| object.is_visible());
         visible.filter_map(object).collect()
@@ -84,7 +86,7 @@ impl Preparing<'_> {
         let material = object.material.as_ref();
         let material = material.map(|m| self.materials.get(m, &path.key("material"), self.findings));
         let content = self.content(object, at, path)?;
-        Some(Prepared { motion: motion?, material, content })
+        Some(Prepared { index: 0, motion: motion?, material, content })
     }
 
     /// The one thing that an object is. That it is exactly one has been checked before.
@@ -233,6 +235,21 @@ struct Placing<'s> {
 }
 
 impl Placing<'_> {
+    /// The objects of the world's own level, and of each of `count` entries the number of its first shape.
+    fn entries(&self, objects: &[Prepared<'_>], count: usize, plain: MaterialId) -> (Vec<world::Object>, Vec<u32>) {
+        let (mut found, mut firsts, mut shapes) = (Vec::new(), Vec::with_capacity(count), 0u64);
+        let number = |shapes: u64| u32::try_from(shapes).unwrap_or(u32::MAX);
+        for object in objects {
+            firsts.resize(firsts.len().max(object.index + 1), number(shapes));
+            let before = found.len();
+            self.place(std::slice::from_ref(object), &Transform::IDENTITY.into(), Some(plain), &mut found);
+            let new = found.get(before..).unwrap_or_default();
+            shapes = new.iter().map(world::Object::shapes).fold(shapes, u64::saturating_add);
+        }
+        firsts.resize(count.max(firsts.len()), number(shapes));
+        (found, firsts)
+    }
+
     /// The objects of one level; those that say nothing are made of `inherited`.
     fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<world::Object> {
         let mut found = Vec::new();

@@ -68,6 +68,9 @@ pub struct Description {
     /// What rays see that leave the world. Black, or a soft sky when the scene has no light of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background: Option<Backdrop>,
+    /// The group of lights that the background's light is kept apart with in layers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub background_light_group: Option<String>,
     /// Textures by name.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub textures: IndexMap<String, AnyTexture>,
@@ -102,6 +105,7 @@ impl Default for Description {
             camera: None,
             cameras: IndexMap::new(),
             background: None,
+            background_light_group: None,
             textures: IndexMap::new(),
             materials: IndexMap::new(),
             groups: IndexMap::new(),

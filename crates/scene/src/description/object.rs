@@ -47,6 +47,10 @@ pub struct Object {
     /// that holds it, or else a plain grey.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialRef>,
+    /// The group of lights that the light of what shines in it is kept apart with in layers. It counts where it stands in the
+    /// scene's own `objects`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_group: Option<String>,
     /// Whether it is there, with all that it holds: yes, unless this is `false` or 0.
     #[serde(skip_serializing_if = "Visible::is_default")]
     pub visible: Visible,

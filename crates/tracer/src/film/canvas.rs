@@ -40,11 +40,12 @@ impl Film {
         Self { layout, cells }
     }
 
-    /// Bytes that a film of so many pixels holds at most while each tile is in no more than `runs` runs of samples.
-    pub fn bytes(pixels: u64, runs: usize) -> u64 {
+    /// Bytes that a film of so many pixels holds at most while each tile is in no more than `runs` runs of samples, with
+    /// `extras` bytes a pixel of what samples have beside radiance.
+    pub fn bytes(pixels: u64, runs: usize, extras: u64) -> u64 {
         // Tiles are arrays of their own, which come and go while others stay: a sixth is lost between them.
         const LOST: u64 = 6;
-        let sums = pixels.saturating_mul(size_of::<Sum>() as u64);
+        let sums = pixels.saturating_mul(size_of::<Sum>() as u64 + extras);
         let tiles = (pixels / u64::from(TILE * TILE)).saturating_add(1);
         let cells = tiles.saturating_mul((size_of::<Cell>() + size_of::<Run>()) as u64);
         sums.saturating_add(sums / LOST).saturating_mul(runs as u64).saturating_add(cells)
@@ -98,6 +99,11 @@ impl Film {
     pub fn tiles(&self) -> impl Iterator<Item = (u64, Tile)> {
         let copies = (0..self.cells.len()).map(|place| (self.cells[place].number, self.tile(place)));
         copies.filter_map(|(number, tile)| tile.map(|tile| (number, tile.clone()))).filter(|(_, tile)| !tile.is_empty())
+    }
+
+    /// A copy of tile `number`; nothing when it is not held.
+    pub fn tile_of(&self, number: u64) -> Option<Tile> {
+        self.place(number).and_then(|place| self.tile(place)).map(|tile| tile.clone())
     }
 
     /// Adds what another film holds of tile `number`; `false` when the tile is not held here.

@@ -1,6 +1,5 @@
 //! How a picture is cut into tiles.
 
-use juggler_math::Rgb;
 use serde::{Deserialize, Serialize};
 
 /// Edge of a tile in pixels.
@@ -37,7 +36,7 @@ impl Rect {
     }
 
     /// Copies its `pixels` to their places in a `band` that holds it; both row by row.
-    pub fn copy(&self, pixels: &[Rgb], band: &Self, target: &mut [Rgb]) {
+    pub fn copy<T: Copy>(&self, pixels: &[T], band: &Self, target: &mut [T]) {
         let width = self.width as usize;
         let place = |row: usize| {
             let row = (self.y as usize + row).checked_sub(band.y as usize)?;

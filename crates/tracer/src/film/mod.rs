@@ -8,6 +8,7 @@
 mod canvas;
 mod clamped;
 mod digest;
+mod extras;
 mod filter;
 mod layout;
 mod sum;
@@ -18,9 +19,10 @@ mod tile;
 pub use canvas::Film;
 pub use clamped::Clamped;
 pub use digest::{Digest, Summary};
+pub use extras::{Extras, InvalidMask, MASKS, Mark, Mask};
 pub use filter::{AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent};
 pub use layout::{Layout, Rect, TILE};
-pub use sum::{Accumulator, Sum, runs};
+pub use sum::{Accumulator, Samples, Sum, runs};
 pub use tile::{Run, Statistics, Tile, TileError};
 
 /// Samples in a block.

@@ -1,6 +1,6 @@
 //! Sums over blocks of samples, joined along a fixed binary tree.
 
-use super::BLOCK;
+use super::{BLOCK, Extras, Mark};
 use arrayvec::ArrayVec;
 use juggler_math::Rgb;
 use std::ops::Range;
@@ -69,6 +69,51 @@ pub(super) fn is_open(samples: &Range<u32>) -> bool {
     samples.start.is_multiple_of(BLOCK) && samples.end > samples.start && samples.end - samples.start < BLOCK
 }
 
+/// Samples of one pixel that follow each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Samples<'s> {
+    /// What came along their rays.
+    pub radiance: &'s [Rgb],
+    /// What clamping took off each; nothing where no sample is clamped.
+    pub clamped: &'s [f32],
+    /// As many colours a sample as there are layers.
+    pub planes: &'s [Rgb],
+    /// What each shows; nothing where nobody asks.
+    pub marks: &'s [Mark],
+}
+
+impl<'s> Samples<'s> {
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.radiance.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.radiance.is_empty()
+    }
+
+    /// The first `count`, and the others.
+    pub fn split_at(self, count: usize) -> (Self, Self) {
+        let count = count.min(self.len());
+        let planes = self.planes.len() / self.len().max(1);
+        let (radiance, radiance_later) = self.radiance.split_at(count);
+        let (clamped, clamped_later) = self.clamped.split_at(count.min(self.clamped.len()));
+        let (colors, colors_later) = self.planes.split_at(count * planes);
+        let (marks, marks_later) = self.marks.split_at(count.min(self.marks.len()));
+        let later = Self { radiance: radiance_later, clamped: clamped_later, planes: colors_later, marks: marks_later };
+        (Self { radiance, clamped, planes: colors, marks }, later)
+    }
+
+    /// What each has beside its radiance, if anything.
+    fn extras(&self) -> impl Iterator<Item = (&'s [Rgb], Option<&'s Mark>)> {
+        let Self { radiance, planes, marks, .. } = *self;
+        let count = planes.len() / radiance.len().max(1);
+        let of = if count == 0 && marks.is_empty() { 0 } else { radiance.len() };
+        (0..of).map(move |i| (planes.get(i * count..(i + 1) * count).unwrap_or_default(), marks.get(i)))
+    }
+}
+
 /// Takes in the samples of one pixel in order and joins their blocks as soon as two are neighbours in the tree.
 #[derive(Clone, Debug, Default)]
 pub struct Accumulator {
@@ -76,43 +121,44 @@ pub struct Accumulator {
     block: Rgb,
     /// What was taken off the block's samples.
     clamped: f32,
+    /// What the block's samples have beside their radiance.
+    extra: Extras,
     runs: ArrayVec<(u32, Sum), MAX_RUNS>,
+    /// The same of the runs; nothing where nobody asks.
+    extras: Vec<Extras>,
 }
 
 impl Accumulator {
     /// Forgets everything. The next sample is `first`: either a block begins with it, or `open` holds the sum of the
     /// samples of its block that are there already.
-    pub fn begin(&mut self, first: u32, open: Option<&Sum>) {
+    pub fn begin(&mut self, first: u32, open: Option<(&Sum, Extras)>) {
+        let (open, extra) = open.map_or((Sum::default(), Extras::default()), |(sum, extra)| (*sum, extra));
         // The sum of an open block was a sum of `f32`s in that order: nothing is lost on the way back.
-        self.block = open.map_or(Rgb::BLACK, |sum| {
-            let [r, g, b] = sum.total.map(|total| total as f32);
-            Rgb::new(r, g, b)
-        });
-        self.clamped = open.map_or(0.0, |sum| sum.clamped);
+        let [r, g, b] = open.total.map(|total| total as f32);
+        self.block = Rgb::new(r, g, b);
+        self.clamped = open.clamped;
+        self.extra = extra;
         self.next = first;
         self.runs.clear();
+        self.extras.clear();
+    }
+
+    /// Adds the next samples, of which nothing but their radiance is known.
+    pub fn add(&mut self, radiance: &[Rgb]) -> u64 {
+        self.add_samples(Samples { radiance, ..Samples::default() })
     }
 
     /// Adds the next samples. One that is no finite number counts as black. Returns how many were not.
     #[inline]
-    pub fn add(&mut self, samples: &[Rgb]) -> u64 {
-        self.add_clamped(samples, &[])
-    }
-
-    /// The same for samples off which clamping took `clamped` each; nothing where no sample is clamped.
-    #[inline]
-    pub fn add_clamped(&mut self, mut samples: &[Rgb], mut clamped: &[f32]) -> u64 {
+    pub fn add_samples(&mut self, mut samples: Samples) -> u64 {
         let mut lost = 0;
         while !samples.is_empty() {
             let room = (BLOCK - self.next % BLOCK) as usize;
-            let (now, rest) = samples.split_at(room.min(samples.len()));
-            lost += self.add_to_block(now);
-            let taken = clamped.split_off(..now.len().min(clamped.len())).unwrap_or_default();
-            self.clamped = now
-                .iter()
-                .zip(taken)
-                .filter(|(sample, _)| sample.is_finite())
-                .fold(self.clamped, |sum, (_, taken)| sum + taken);
+            let (now, rest) = samples.split_at(room);
+            lost += self.add_to_block(now.radiance);
+            let taken = now.radiance.iter().zip(now.clamped).filter(|(sample, _)| sample.is_finite());
+            self.clamped = taken.fold(self.clamped, |sum, (_, taken)| sum + taken);
+            now.extras().for_each(|(planes, mark)| self.extra.add(planes, mark));
             self.next = self.next.wrapping_add(now.len() as u32);
             if now.len() == room {
                 self.close();
@@ -141,6 +187,7 @@ impl Accumulator {
 
     fn close(&mut self) {
         let mut sum = self.block_sum();
+        let mut extra = std::mem::take(&mut self.extra);
         (self.block, self.clamped) = (Rgb::BLACK, 0.0);
         let mut level = 0;
         let mut number = self.next.wrapping_sub(1) / BLOCK;
@@ -150,17 +197,27 @@ impl Accumulator {
         {
             sum = left.joined(&sum, [1 << level; 2]);
             self.runs.pop();
+            extra = self.extras.pop().map_or_else(Extras::default, |left| left.joined(&extra));
             level += 1;
             number >>= 1;
         }
         // At most one a level on the way up and one on the way down: there is room.
         let _ = self.runs.try_push((level, sum));
+        if !extra.is_empty() {
+            self.extras.push(extra);
+        }
     }
 
     /// The runs' sums in order, the open block's last.
     pub fn sums(&self) -> impl Iterator<Item = Sum> {
         let open = (!self.next.is_multiple_of(BLOCK)).then(|| self.block_sum());
         self.runs.iter().map(|(_, sum)| *sum).chain(open)
+    }
+
+    /// What the runs have beside radiance, in the same order; nothing where nobody asks.
+    pub fn extras(&mut self) -> impl Iterator<Item = Extras> {
+        let open = std::mem::take(&mut self.extra);
+        self.extras.drain(..).chain((!open.is_empty()).then_some(open))
     }
 }
 

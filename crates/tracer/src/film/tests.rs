@@ -16,10 +16,10 @@ fn sample(pixel: u32, index: u32) -> Rgb {
 /// The tile of these samples, as the engine makes it.
 fn tile(samples: Range<u32>, open: Option<&Run>) -> Tile {
     let mut tile = Tile::new(PIXELS);
-    let mut runs: Vec<Run> = runs(samples.clone()).into_iter().map(|samples| Run { samples, sums: vec![] }).collect();
+    let mut runs: Vec<Run> = runs(samples.clone()).into_iter().map(|samples| Run::new(samples, vec![])).collect();
     for pixel in 0..PIXELS.area() as u32 {
         let mut accumulator = Accumulator::default();
-        accumulator.begin(samples.start, open.map(|run| &run.sums[pixel as usize]));
+        accumulator.begin(samples.start, open.map(|run| (&run.sums[pixel as usize], Extras::default())));
         let radiance: Vec<Rgb> = samples.clone().map(|index| sample(pixel, index)).collect();
         assert_eq!(accumulator.add(&radiance), 0);
         let sums: Vec<Sum> = accumulator.sums().collect();
@@ -104,12 +104,12 @@ fn gaps_are_seen() {
 
 #[test]
 fn what_is_no_run_is_refused() {
-    let run = |samples: Range<u32>| Run { samples, sums: vec![Sum::default(); 2] };
+    let run = |samples: Range<u32>| Run::new(samples, vec![Sum::default(); 2]);
     let mut tile = Tile::new(PIXELS);
     for uneven in [3..5, 8..24, 16..64, 32..96, 0..48, 5..5, 16..16] {
         assert_eq!(tile.add(run(uneven.clone())), Err(TileError::Uneven(uneven)));
     }
-    assert_eq!(tile.add(Run { samples: 0..16, sums: vec![Sum::default()] }), Err(TileError::Pixels));
+    assert_eq!(tile.add(Run::new(0..16, vec![Sum::default()])), Err(TileError::Pixels));
     tile.add(run(32..37)).unwrap();
     assert_eq!(tile.add(run(32..48)), Err(TileError::Doubled(32..48)), "a block that was begun");
     assert_eq!(tile.add(run(0..64)), Err(TileError::Doubled(0..64)));
@@ -127,7 +127,7 @@ fn statistics_are_those_of_the_blocks() {
             accumulator.add(&samples);
             let mut tile = Tile::new(Rect { width: 1, ..PIXELS });
             for (samples, sum) in runs(0..samples.len() as u32).into_iter().zip(accumulator.sums()) {
-                tile.add(Run { samples, sums: vec![sum] }).unwrap();
+                tile.add(Run::new(samples, vec![sum])).unwrap();
             }
             let found = tile.statistics(0);
             assert_eq!(found.blocks, blocks);

@@ -1,7 +1,7 @@
 //! A rectangle of pixels with the samples that are there so far.
 
 use super::sum::{Sum, is_open, joined_weight, level, weight};
-use super::{BLOCK, Clamped, Rect};
+use super::{BLOCK, Clamped, Extras, Rect};
 use juggler_math::Rgb;
 use std::ops::Range;
 
@@ -15,6 +15,15 @@ pub struct Run {
     pub samples: Range<u32>,
     /// Their sums, pixel by pixel, row by row.
     pub sums: Vec<Sum>,
+    /// The same of what they have beside their radiance, if anything was asked for.
+    pub extras: Extras,
+}
+
+impl Run {
+    /// Of nothing but radiance.
+    pub fn new(samples: Range<u32>, sums: Vec<Sum>) -> Self {
+        Self { samples, sums, extras: Extras::default() }
+    }
 }
 
 /// A rectangle of pixels with the samples that are there so far, all pixels alike.
@@ -37,6 +46,9 @@ pub enum TileError {
     /// They are of other pixels.
     #[error("the samples are of other pixels")]
     Pixels,
+    /// They have other layers than those that are there.
+    #[error("the samples have other layers than those that are there")]
+    Layers,
 }
 
 impl Tile {
@@ -96,8 +108,11 @@ impl Tile {
     /// Adds a run, whatever the order in which runs come: the result is the same to the bit.
     pub fn add(&mut self, run: Run) -> Result<(), TileError> {
         let Range { start, end } = run.samples;
-        if run.sums.len() as u64 != self.pixels.area() {
+        if run.sums.len() as u64 != self.pixels.area() || !run.extras.is_of(run.sums.len()) {
             return Err(TileError::Pixels);
+        }
+        if self.runs.first().is_some_and(|other| !other.extras.fits(&run.extras)) {
+            return Err(TileError::Layers);
         }
         if level(&run.samples).is_none() && !is_open(&run.samples) {
             return Err(TileError::Uneven(run.samples));
@@ -135,6 +150,7 @@ impl Tile {
             for (sum, next) in a.sums.iter_mut().zip(&b.sums) {
                 *sum = sum.joined(next, [1 << level; 2]);
             }
+            a.extras = std::mem::take(&mut a.extras).joined(&b.extras);
             a.samples.end = b.samples.end;
             self.runs.remove(left + 1);
             place = left;
@@ -164,6 +180,13 @@ impl Tile {
             }
             total
         })
+    }
+
+    /// The sums of all that the samples have beside their radiance.
+    pub fn extras(&self) -> Extras {
+        let mut runs = self.runs.iter().map(|run| &run.extras);
+        let first = runs.next().cloned().unwrap_or_default();
+        runs.fold(first, Extras::joined)
     }
 
     /// What clamping took off the finished pixels.

@@ -5,6 +5,7 @@
 //! ```
 
 use super::{Emit, Integrator, PathState};
+use crate::layer::LightGroup;
 use crate::world::{Vertex, World};
 use juggler_math::Ray;
 use schemars::JsonSchema;
@@ -18,10 +19,11 @@ pub struct Albedo {}
 impl Integrator for Albedo {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
         let diffuse = world.phong(vertex).map(|phong| phong.diffuse);
-        emit.add(diffuse.unwrap_or_else(|| {
+        let albedo = diffuse.unwrap_or_else(|| {
             let shade = world.shade(vertex, -ray.direction, 1.0, path.sampler.at(0).next_1d());
-            shade.bsdf.albedo(shade.frame.to_local(-ray.direction))
-        }));
+            shade.albedo(-ray.direction)
+        });
+        emit.add(albedo, LightGroup::REST);
     }
 }
 

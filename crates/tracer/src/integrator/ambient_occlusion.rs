@@ -5,6 +5,7 @@
 //! ```
 
 use super::{Emit, Integrator, PathState};
+use crate::layer::LightGroup;
 use crate::world::{Vertex, World};
 use juggler_math::{Frame, Ray, Rgb, warp};
 use schemars::JsonSchema;
@@ -28,11 +29,11 @@ impl Integrator for AmbientOcclusion {
         let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
         let extent = world.bounds().extent();
         let distance = self.distance.unwrap_or_else(|| 0.5 * extent.max(juggler_math::Vec3::ZERO).length());
-        emit.if_visible(surface.spawn(direction, ray.time).up_to(distance), Rgb::WHITE);
+        emit.if_visible(surface.spawn(direction, ray.time).up_to(distance), Rgb::WHITE, LightGroup::REST);
     }
 
     fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.add(Rgb::WHITE);
+        emit.add(Rgb::WHITE, LightGroup::REST);
     }
 }
 

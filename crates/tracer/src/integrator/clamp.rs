@@ -11,12 +11,14 @@ pub struct Clamp {
     pub indirect: f32,
 }
 
-/// Which of the two limits holds.
+/// How far light has come, and so which of the two limits holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// [`Clamp::direct`].
+    /// What the camera sees shine: [`Clamp::direct`].
+    Seen,
+    /// What lights light: [`Clamp::direct`].
     Direct,
-    /// [`Clamp::indirect`].
+    /// By longer ways: [`Clamp::indirect`].
     Indirect,
 }
 
@@ -24,7 +26,11 @@ impl Way {
     /// Of a path of so many stretches from the camera to the light.
     #[inline]
     pub fn of(stretches: u32) -> Self {
-        if stretches > 2 { Self::Indirect } else { Self::Direct }
+        match stretches {
+            0 | 1 => Self::Seen,
+            2 => Self::Direct,
+            _ => Self::Indirect,
+        }
     }
 }
 
@@ -55,7 +61,7 @@ impl Clamping {
     #[inline]
     pub fn limit(&mut self, slot: usize, way: Way, radiance: Rgb) -> Rgb {
         let limit = match way {
-            Way::Direct => self.limits.direct,
+            Way::Seen | Way::Direct => self.limits.direct,
             Way::Indirect => self.limits.indirect,
         };
         let most = limit * self.weights[slot];

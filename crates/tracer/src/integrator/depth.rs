@@ -5,6 +5,7 @@
 //! ```
 
 use super::{Emit, Integrator, PathState};
+use crate::layer::LightGroup;
 use crate::world::{Vertex, World};
 use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
@@ -21,7 +22,7 @@ pub struct Depth {
 
 impl Integrator for Depth {
     fn vertex(&self, _world: &World, ray: &Ray, _path: &PathState, _vertex: &Vertex, emit: &mut Emit) {
-        emit.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)));
+        emit.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)), LightGroup::REST);
     }
 }
 

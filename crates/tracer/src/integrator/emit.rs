@@ -1,6 +1,8 @@
 //! What an integrator may do at a vertex.
 
-use super::{Clamping, Cone, Trail, Way};
+use super::{Clamping, Cone, Record, Trail, Way};
+use crate::film::Samples;
+use crate::layer::LightGroup;
 use crate::medium::Interiors;
 use crate::sampler::Sampler;
 use arrayvec::ArrayVec;
@@ -59,8 +61,10 @@ pub(crate) struct ShadowQueue {
 pub(crate) struct Gain {
     /// To which sample: passes are short enough.
     pub slot: u16,
-    /// Which limit holds, where there are some.
+    /// How far it has come.
     pub way: Way,
+    /// Which group of lights it is of.
+    pub group: LightGroup,
     /// How much.
     pub radiance: Rgb,
     /// The solids that the ray starts in.
@@ -73,6 +77,8 @@ pub(crate) struct Bent {
     pub legs: ArrayVec<Ray, 3>,
     /// To which sample.
     pub slot: u32,
+    /// Which group of lights it is of.
+    pub group: LightGroup,
     /// How much.
     pub radiance: Rgb,
 }
@@ -84,6 +90,8 @@ pub(crate) struct Harvest {
     pub radiance: Vec<Rgb>,
     /// What limits that.
     pub clamping: Option<Clamping>,
+    /// What else is kept of each.
+    pub record: Option<Record>,
     /// One queue a light, whose rays run much the same way, and at the end one for rays that do not.
     pub shadows: Vec<ShadowQueue>,
     /// Ways around a corner to lights.
@@ -102,11 +110,21 @@ impl Harvest {
         self.shadows.resize_with(lights.min(MAX_LIGHT_QUEUES) + 1, ShadowQueue::default);
     }
 
+    /// All samples, as they are gathered.
+    pub fn samples(&self) -> Samples<'_> {
+        let clamped = self.clamping.as_ref().map_or(&[][..], |clamping| &clamping.taken);
+        let (planes, marks) = self.record.as_ref().map_or((&[][..], &[][..]), |record| (&record.planes, &record.marks));
+        Samples { radiance: &self.radiance, clamped, planes, marks }
+    }
+
     /// Adds to a sample what limits leave of it.
     #[inline]
-    pub fn add(&mut self, slot: usize, way: Way, mut radiance: Rgb) {
+    pub fn add(&mut self, slot: usize, way: Way, group: LightGroup, mut radiance: Rgb) {
         if let Some(clamping) = &mut self.clamping {
             radiance = clamping.limit(slot, way, radiance);
+        }
+        if let Some(record) = &mut self.record {
+            record.light(slot, way, group, radiance);
         }
         self.radiance[slot] += radiance;
     }
@@ -117,10 +135,10 @@ const MAX_LIGHT_QUEUES: usize = 64;
 
 /// What an integrator may do at a vertex: add, ask, go on.
 pub struct Emit<'a> {
-    harvest: &'a mut Harvest,
-    path: &'a PathState,
+    pub(super) harvest: &'a mut Harvest,
+    pub(super) path: &'a PathState,
     /// What radiance from here is worth to the sample.
-    weight: Rgb,
+    pub(super) weight: Rgb,
     /// How wide the ray is here.
     cone: Cone,
 }
@@ -149,43 +167,43 @@ impl<'a> Emit<'a> {
         self.weight *= factor;
     }
 
-    /// Adds to the sample, times the path's weight.
+    /// Adds to the sample, times the path's weight, light of a group of lights.
     #[inline]
-    pub fn add(&mut self, radiance: Rgb) {
+    pub fn add(&mut self, radiance: Rgb, group: LightGroup) {
         let way = Way::of(self.path.depth.saturating_add(1));
-        self.harvest.add(self.path.slot as usize, way, radiance * self.weight);
+        self.harvest.add(self.path.slot as usize, way, group, radiance * self.weight);
     }
 
     /// Adds, times the path's weight, what of `radiance` comes through along `ray` from light number `light`.
     #[inline]
-    pub fn if_light_visible(&mut self, light: usize, ray: Ray, radiance: Rgb) {
+    pub fn if_light_visible(&mut self, light: usize, ray: Ray, radiance: Rgb, group: LightGroup) {
         let queues = self.harvest.shadows.len() - 1;
         let queue = if light < queues { light } else { light % queues.max(1) };
-        self.push_shadow(queue, ray, radiance, Interiors::NONE);
+        self.push_shadow(queue, ray, radiance, group, Interiors::NONE);
     }
 
     /// The same for a ray of no particular direction.
     #[inline]
-    pub fn if_visible(&mut self, ray: Ray, radiance: Rgb) {
-        self.if_visible_inside(ray, radiance, Interiors::NONE);
+    pub fn if_visible(&mut self, ray: Ray, radiance: Rgb, group: LightGroup) {
+        self.if_visible_inside(ray, radiance, group, Interiors::NONE);
     }
 
     /// The same for a ray that starts in solids, whose media take their share of it.
     #[inline]
-    pub fn if_visible_inside(&mut self, ray: Ray, radiance: Rgb, inside: Interiors) {
-        self.push_shadow(self.harvest.shadows.len() - 1, ray, radiance, inside);
+    pub fn if_visible_inside(&mut self, ray: Ray, radiance: Rgb, group: LightGroup, inside: Interiors) {
+        self.push_shadow(self.harvest.shadows.len() - 1, ray, radiance, group, inside);
     }
 
     /// Adds, times the path's weight, `radiance` if all of the rays come through.
-    pub fn if_all_free(&mut self, legs: ArrayVec<Ray, 3>, radiance: Rgb) {
+    pub fn if_all_free(&mut self, legs: ArrayVec<Ray, 3>, radiance: Rgb, group: LightGroup) {
         let radiance = radiance * self.weight;
         if !radiance.is_black() {
             self.harvest.pending += legs.len();
-            self.harvest.bent.push(Bent { legs, slot: self.path.slot, radiance });
+            self.harvest.bent.push(Bent { legs, slot: self.path.slot, group, radiance });
         }
     }
 
-    fn push_shadow(&mut self, queue: usize, ray: Ray, radiance: Rgb, inside: Interiors) {
+    fn push_shadow(&mut self, queue: usize, ray: Ray, radiance: Rgb, group: LightGroup, inside: Interiors) {
         let radiance = radiance * self.weight;
         if radiance.is_black() {
             return;
@@ -194,7 +212,7 @@ impl<'a> Emit<'a> {
         let queue = &mut self.harvest.shadows[queue];
         queue.rays.push(ray);
         let way = Way::of(self.path.depth.saturating_add(2));
-        queue.gains.push(Gain { slot: self.path.slot as u16, way, radiance, inside });
+        queue.gains.push(Gain { slot: self.path.slot as u16, way, group, radiance, inside });
     }
 
     /// Follows `ray`, the `child`-th that leaves this vertex; what it finds counts `weight` times as much.

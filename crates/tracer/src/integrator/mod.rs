@@ -17,6 +17,7 @@ mod direct;
 mod emit;
 mod normals;
 mod path;
+mod record;
 mod trail;
 
 pub use clamp::Clamp;
@@ -24,6 +25,8 @@ pub(crate) use clamp::{Clamping, Way};
 pub use cone::Cone;
 pub(crate) use emit::{Bent, Harvest, Queue};
 pub use emit::{Emit, PathState};
+pub(crate) use record::Record;
+pub use record::Sight;
 pub use trail::{Chain, Counts, Stage, Trail};
 
 /// Light transport, nothing else.

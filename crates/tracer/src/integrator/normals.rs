@@ -5,6 +5,7 @@
 //! ```
 
 use super::{Emit, Integrator, PathState};
+use crate::layer::LightGroup;
 use crate::world::{Vertex, World};
 use juggler_math::{Ray, Rgb};
 use schemars::JsonSchema;
@@ -18,7 +19,7 @@ pub struct Normals {}
 impl Integrator for Normals {
     fn vertex(&self, _world: &World, _ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
         let n = vertex.surface.shading_normal * 0.5 + 0.5;
-        emit.add(Rgb::new(n.x, n.y, n.z));
+        emit.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
     }
 }
 

@@ -32,6 +32,9 @@ pub struct Directional {
     #[serde(skip_serializing_if = "is_one")]
     #[schemars(range(min = 1, max = 10_000))]
     pub samples: u32,
+    /// The group of lights that it is kept apart with in layers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_group: Option<String>,
 }
 
 fn is_zero(angle: &f32) -> bool {
@@ -44,11 +47,16 @@ fn is_one(samples: &u32) -> bool {
 
 impl Default for Directional {
     fn default() -> Self {
-        Self { direction: Vec3::NEG_Y, color: Rgb::WHITE, intensity: 1.0, angle_degrees: 0.0, samples: 1 }
+        let (direction, color) = (Vec3::NEG_Y, Rgb::WHITE);
+        Self { direction, color, intensity: 1.0, angle_degrees: 0.0, samples: 1, light_group: None }
     }
 }
 
 impl Light for Directional {
+    fn light_group(&self) -> Option<&str> {
+        self.light_group.as_deref()
+    }
+
     fn check(&self) -> Result<(), InvalidLight> {
         check_direction(self.direction)?;
         in_range("angle_degrees", self.angle_degrees, 0.0, 180.0)?;

@@ -66,6 +66,10 @@ pub trait Light: Send + Sync {
     fn ies(&mut self) -> Option<&mut Ies> {
         None
     }
+    /// The group of lights that it is kept apart with in layers.
+    fn light_group(&self) -> Option<&str> {
+        None
+    }
     /// Light that is everywhere, from nowhere.
     fn ambient(&self) -> Rgb {
         Rgb::BLACK

@@ -37,6 +37,9 @@ pub struct Point {
     /// A photometric file that says how strongly it shines into each direction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ies: Option<Ies>,
+    /// The group of lights that it is kept apart with in layers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_group: Option<String>,
 }
 
 impl Default for Point {
@@ -49,6 +52,7 @@ impl Default for Point {
             extent: None,
             samples: 1,
             ies: None,
+            light_group: None,
         }
     }
 }
@@ -62,6 +66,10 @@ impl Point {
 }
 
 impl Light for Point {
+    fn light_group(&self) -> Option<&str> {
+        self.light_group.as_deref()
+    }
+
     fn check(&self) -> Result<(), InvalidLight> {
         check_color(self.color, self.intensity)?;
         self.ies.as_ref().map_or(Ok(()), Ies::check)?;
@@ -123,6 +131,7 @@ impl Point {
             intensity: 3.0,
             samples: 16,
             ies: None,
+            light_group: None,
         };
         let measured = Self { ies: Some(super::ies::tests::lamp()), ..Self::default() };
         vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured]

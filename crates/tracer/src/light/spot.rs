@@ -52,6 +52,9 @@ pub struct Spot {
     /// A photometric file that says how strongly it shines into each direction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ies: Option<Ies>,
+    /// The group of lights that it is kept apart with in layers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_group: Option<String>,
 }
 
 impl Default for Spot {
@@ -68,6 +71,7 @@ impl Default for Spot {
             extent: None,
             samples: 1,
             ies: None,
+            light_group: None,
         }
     }
 }
@@ -89,6 +93,10 @@ impl Spot {
 }
 
 impl Light for Spot {
+    fn light_group(&self) -> Option<&str> {
+        self.light_group.as_deref()
+    }
+
     fn check(&self) -> Result<(), InvalidLight> {
         check_color(self.color, self.intensity)?;
         self.ies.as_ref().map_or(Ok(()), Ies::check)?;

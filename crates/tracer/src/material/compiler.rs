@@ -39,6 +39,14 @@ impl MaterialCompiler {
         self.named.keys().map(String::as_str)
     }
 
+    /// The named materials that were asked for so far, with their numbers.
+    pub fn compiled(&self) -> impl Iterator<Item = (&str, MaterialId)> {
+        self.named.iter().filter_map(|(name, state)| match state {
+            State::Done(id) => Some((name.as_str(), *id)),
+            State::Waiting(_) | State::InProgress => None,
+        })
+    }
+
     /// Compiles one description. The error's path starts with the material's kind.
     pub fn compile(&mut self, material: &AnyMaterial) -> Result<MaterialId, MaterialError> {
         self.depth += 1;

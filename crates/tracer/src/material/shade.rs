@@ -76,6 +76,11 @@ impl Shade {
         transmissive: false,
         lamp_scale: 1.0,
     };
+
+    /// The share of light from everywhere that comes back towards `wo`, a unit vector of the world: its colour without light.
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        self.bsdf.albedo(self.frame.to_local(wo))
+    }
 }
 
 /// The shading normal `normal` on the viewer's side, bent so far towards the true one that a mirror there shows

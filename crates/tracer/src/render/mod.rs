@@ -4,14 +4,16 @@
 //! of samples give a [`Tile`], on any thread or machine.
 
 use crate::camera::Shot;
-use crate::film::{Filter, Rect, Sum, Tile};
+use crate::film::{Filter, Rect, Run, Tile};
 use crate::integrator::Integrator;
+use crate::layer::Layers;
 use crate::sampler::Pattern;
 use crate::world::World;
 use std::ops::Range;
 
 mod control;
 mod expose;
+mod exposed;
 mod progressive;
 mod rounds;
 mod schedule;
@@ -33,14 +35,14 @@ pub struct Work {
     /// Which samples of each.
     pub samples: Range<u32>,
     /// Where the first sample is in the middle of a block of [`BLOCK`](crate::film::BLOCK): for each pixel, the sum of
-    /// the block's samples before it. Else nothing.
-    pub open: Vec<Sum>,
+    /// the block's samples before it.
+    pub open: Option<Run>,
 }
 
 impl Work {
     /// The first `samples` samples.
     pub fn first(pixels: Rect, samples: u32) -> Self {
-        Self { pixels, samples: 0..samples, open: Vec::new() }
+        Self { pixels, samples: 0..samples, open: None }
     }
 }
 
@@ -61,6 +63,8 @@ pub struct Job<'w> {
     pub samples: u32,
     /// Another seed, another noise.
     pub seed: u64,
+    /// What is kept beside radiance.
+    pub layers: &'w Layers,
 }
 
 impl Job<'_> {

@@ -61,8 +61,8 @@ impl Round {
         else {
             return;
         };
-        let sums = open.as_ref().map_or_else(Vec::new, |run| run.sums.clone());
-        let rendered = engine.render(&Work { pixels, samples: self.samples.clone(), open: sums }, control);
+        let work = Work { pixels, samples: self.samples.clone(), open: open.clone() };
+        let rendered = engine.render(&work, control);
         let Some(mut tile) = film.tile(self.place) else { return };
         let added = match (rendered, open) {
             (Ok(new), _) => tile.merge(new),

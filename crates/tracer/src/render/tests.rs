@@ -6,6 +6,7 @@ use crate::bsdf::fresnel;
 use crate::camera::{AnyCamera, Perspective};
 use crate::film::{Box as BoxFilter, Reconstruction};
 use crate::integrator::{AnyIntegrator, Classic, Emit, Integrator, PathState};
+use crate::layer::{self, LightGroup};
 use crate::light::AnyLight;
 use crate::material::{AnyMaterial, MaterialCompiler};
 use crate::sampler::{Pattern, Sobol, Spread};
@@ -68,7 +69,7 @@ pub fn pixels(world: &World, camera: &Shot, integrator: &AnyIntegrator, size: UV
 pub fn job<'w>(world: &'w World, camera: &'w Shot, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
     let (pattern, filter) = (Sobol {}.pattern(samples), BoxFilter {}.filter(samples));
     assert_eq!(pattern, Pattern::Sobol);
-    Job { world, camera, integrator: &**integrator, filter, pattern, samples, seed: 1 }
+    Job { world, camera, integrator: &**integrator, filter, pattern, samples, seed: 1, layers: &layer::NONE }
 }
 
 fn near(a: Rgb, b: Rgb, tolerance: f32) -> bool {
@@ -234,7 +235,7 @@ impl Integrator for Broken {
 
     fn escape(&self, _: &World, ray: &Ray, _: &PathState, emit: &mut Emit) {
         let column = (ray.direction.x * 40.0).floor() as i32;
-        emit.add(Rgb::splat(if column.rem_euclid(3) == 0 { f32::NAN } else { column as f32 }));
+        emit.add(Rgb::splat(if column.rem_euclid(3) == 0 { f32::NAN } else { column as f32 }), LightGroup::REST);
     }
 }
 

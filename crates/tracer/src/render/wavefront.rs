@@ -7,9 +7,10 @@
 //! own tree of rays alone. The same cuts bound the memory.
 
 use super::expose::{Start, expose, start};
+use super::exposed::Exposed;
 use super::{Control, Job, Rays, Stopped, Work};
-use crate::film::{Accumulator, Clamped, Rect, Run, Tile, runs};
-use crate::integrator::{Bent, Clamping, Emit, Harvest, Queue, Way};
+use crate::film::{Clamped, Rect, Samples, Tile};
+use crate::integrator::{Bent, Clamping, Emit, Harvest, Queue, Record, Way};
 use crate::world::{Shadows, WorldHit};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
@@ -47,7 +48,11 @@ impl<'j> Engine<'j> {
             measures: job.world.has_pictures() || job.integrator.fades_patterns(),
             hits: Vec::new(),
             through: Vec::new(),
-            harvest: Harvest { clamping: job.integrator.clamp().map(Clamping::new), ..Harvest::default() },
+            harvest: Harvest {
+                clamping: job.integrator.clamp().map(Clamping::new),
+                record: (!job.layers.is_empty()).then(|| Record::new(job.layers)),
+                ..Harvest::default()
+            },
             stack: Vec::new(),
             spare: Vec::new(),
             rays: Rays::default(),
@@ -56,8 +61,8 @@ impl<'j> Engine<'j> {
 
     /// Renders one piece of work.
     pub fn render(&mut self, work: &Work, control: &Control) -> Result<Tile, Stopped> {
-        let mut film = Exposed::new(work);
-        self.passes(work, control, |radiance, clamped| film.add(radiance, clamped))?;
+        let mut film = Exposed::new(work, self.job.layers);
+        self.passes(work, control, |samples| film.add(samples))?;
         Ok(film.tile())
     }
 
@@ -66,7 +71,7 @@ impl<'j> Engine<'j> {
     pub fn render_single(&mut self, pixels: Rect, control: &Control) -> Result<(Vec<Rgb>, Clamped), Stopped> {
         let mut means = Vec::with_capacity(pixels.area() as usize);
         let mut taken = Clamped::default();
-        self.passes(&Work::first(pixels, 1), control, |radiance, clamped| {
+        self.passes(&Work::first(pixels, 1), control, |Samples { radiance, clamped, .. }| {
             let lost = radiance.iter().filter(|sample| !sample.is_finite()).count() as u64;
             means.extend(radiance.iter().map(|sample| if sample.is_finite() { *sample } else { Rgb::BLACK }));
             let finite = radiance.iter().zip(clamped).filter(|(sample, _)| sample.is_finite());
@@ -76,14 +81,8 @@ impl<'j> Engine<'j> {
         Ok((means, taken))
     }
 
-    /// Traces all samples and hands them to `take` in order, with what clamping took off each where it is on; `take` says how
-    /// many were no finite numbers.
-    fn passes(
-        &mut self,
-        work: &Work,
-        control: &Control,
-        mut take: impl FnMut(&[Rgb], &[f32]) -> u64,
-    ) -> Result<(), Stopped> {
+    /// Traces all samples and hands them to `take` in order; `take` says how many were no finite numbers.
+    fn passes(&mut self, work: &Work, control: &Control, mut take: impl FnMut(Samples) -> u64) -> Result<(), Stopped> {
         let samples = work.samples.len() as u64;
         let end = work.pixels.area() * samples;
         let mut first = 0;
@@ -94,8 +93,7 @@ impl<'j> Engine<'j> {
             let slots = first..end.min(first + PASS);
             let count = slots.end - slots.start;
             self.pass(work, samples, slots);
-            let clamped = self.harvest.clamping.as_ref().map_or(&[][..], |clamping| &clamping.taken);
-            self.rays.not_finite += take(&self.harvest.radiance, clamped);
+            self.rays.not_finite += take(self.harvest.samples());
             self.rays.camera += count;
             control.add(count, &std::mem::take(&mut self.rays));
             first += count;
@@ -108,8 +106,12 @@ impl<'j> Engine<'j> {
         self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
         let mut camera = self.spare.pop().unwrap_or_default();
         expose(self.job, &self.start, work, samples, slots, &mut camera);
+        let weights = || camera.paths.iter().map(|path| path.weight.r);
         if let Some(clamping) = &mut self.harvest.clamping {
-            clamping.begin(camera.paths.iter().map(|path| path.weight.r));
+            clamping.begin(weights());
+        }
+        if let Some(record) = &mut self.harvest.record {
+            record.begin(weights());
         }
         self.stack.push(camera);
         while let Some(queue) = self.stack.pop() {
@@ -164,7 +166,7 @@ impl<'j> Engine<'j> {
 
     /// Answers the shadow rays, light by light, and adds what comes through.
     fn shadows(&mut self) {
-        let Harvest { radiance, clamping, shadows, pending, .. } = &mut self.harvest;
+        let Harvest { radiance, clamping, record, shadows, pending, .. } = &mut self.harvest;
         *pending = 0;
         let last = shadows.len().saturating_sub(1);
         let kept = self.job.integrator.shadows();
@@ -184,6 +186,9 @@ impl<'j> Engine<'j> {
                 let (slot, mut more) = (usize::from(gain.slot), gain.radiance * *through);
                 if let Some(clamping) = clamping {
                     more = clamping.limit(slot, gain.way, more);
+                }
+                if let Some(record) = record {
+                    record.light(slot, gain.way, gain.group, more);
                 }
                 radiance[slot] += more;
             }
@@ -208,7 +213,7 @@ impl<'j> Engine<'j> {
             open.retain(|bent| bent.legs.len() <= leg || through.next().is_some_and(|through| !through.is_black()));
         }
         for bent in open.drain(..) {
-            self.harvest.add(bent.slot as usize, Way::Indirect, bent.radiance);
+            self.harvest.add(bent.slot as usize, Way::Indirect, bent.group, bent.radiance);
         }
         self.harvest.bent = open;
     }
@@ -245,62 +250,6 @@ impl<'j> Engine<'j> {
         }
         next.clear();
         self.spare.push(next);
-    }
-}
-
-/// The film under one piece of work: the samples of a pixel come one after the other, and pixel after pixel.
-struct Exposed<'w> {
-    work: &'w Work,
-    runs: Vec<Run>,
-    /// Of the pixel whose samples come now.
-    pixel: Accumulator,
-    /// Which pixel that is, and how many of its samples are to come.
-    number: usize,
-    missing: usize,
-}
-
-impl<'w> Exposed<'w> {
-    fn new(work: &'w Work) -> Self {
-        let area = work.pixels.area() as usize;
-        let run = |samples| Run { samples, sums: Vec::with_capacity(area) };
-        let runs = runs(work.samples.clone()).into_iter().map(run).collect();
-        let mut film = Self { work, runs, pixel: Accumulator::default(), number: 0, missing: 0 };
-        film.begin();
-        film
-    }
-
-    fn begin(&mut self) {
-        self.missing = self.work.samples.len();
-        self.pixel.begin(self.work.samples.start, self.work.open.get(self.number));
-    }
-
-    /// Adds the next finished samples to their pixels, with what clamping took off them. Returns how many were no finite
-    /// numbers.
-    fn add(&mut self, mut radiance: &[Rgb], mut clamped: &[f32]) -> u64 {
-        let mut lost = 0;
-        while !radiance.is_empty() {
-            let (now, later) = radiance.split_at(self.missing.min(radiance.len()));
-            let taken = clamped.split_off(..now.len().min(clamped.len())).unwrap_or_default();
-            lost += self.pixel.add_clamped(now, taken);
-            self.missing -= now.len();
-            radiance = later;
-            if self.missing == 0 {
-                self.runs.iter_mut().zip(self.pixel.sums()).for_each(|(run, sum)| run.sums.push(sum));
-                self.number += 1;
-                self.begin();
-            }
-        }
-        lost
-    }
-
-    fn tile(self) -> Tile {
-        let mut tile = Tile::new(self.work.pixels);
-        for run in self.runs {
-            // Runs of one range: none overlaps, all are whole.
-            let added = tile.add(run);
-            debug_assert_eq!(added, Ok(()));
-        }
-        tile
     }
 }
 

@@ -56,10 +56,21 @@ pub struct Lighting {
     pub pdf: f32,
     /// Whether a ray may meet it by chance.
     pub can_be_met: bool,
-    /// Number of the light of the scene that it is; nothing for a shape that shines and for the background.
-    pub lamp: Option<u32>,
+    /// Where it comes from.
+    pub origin: Origin,
     /// Unit normal of the surface that shines; zero where there is none.
     pub normal: Vec3,
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// A light of the scene, by number.
+    Lamp(u32),
+    /// A shape that shines, by number.
+    Shape(u32),
+    /// What lies behind everything.
+    Background,
 }
 
 /// A place that light comes to.
@@ -197,7 +208,8 @@ impl World {
                 let sample = area.sample(to.point, rest)?;
                 let shape = &emitters.shapes.get(*shape as usize)?.shape;
                 let radiance = shape.radiance(&self.materials, to, sample.wi, sample.normal)?;
-                Some(met(sample.wi, sample.distance, radiance, sample.pdf * chance, sample.normal))
+                let origin = Origin::Shape(shape.number);
+                Some(met(origin, sample.wi, sample.distance, radiance, sample.pdf * chance, sample.normal))
             }
             Emitter::Shape(shape) => {
                 emitters.shapes.get(*shape as usize)?.shape.sample(&self.materials, to, rest, chance)
@@ -213,7 +225,7 @@ impl World {
             radiance: sample.radiance,
             pdf: sample.pdf * chance,
             can_be_met: false,
-            lamp: Some(number),
+            origin: Origin::Lamp(number),
             normal: Vec3::ZERO,
         })
     }
@@ -231,7 +243,8 @@ impl World {
             return None;
         }
         let radiance = self.background.radiance(&Ray { time: to.time, ..Ray::new(to.point, sample.wi) });
-        (!radiance.is_black()).then(|| met(sample.wi, f32::INFINITY, radiance, sample.pdf * chance, Vec3::ZERO))
+        (!radiance.is_black())
+            .then(|| met(Origin::Background, sample.wi, f32::INFINITY, radiance, sample.pdf * chance, Vec3::ZERO))
     }
 
     /// Density per steradian with which [`World::sample_light`] picks a direction in which a ray left the world.
@@ -247,6 +260,6 @@ impl World {
 }
 
 /// Light from a surface, which rays meet by chance too.
-pub(super) fn met(wi: Vec3, distance: f32, radiance: Rgb, pdf: f32, normal: Vec3) -> Lighting {
-    Lighting { wi, distance, radiance, pdf, can_be_met: true, lamp: None, normal }
+pub(super) fn met(origin: Origin, wi: Vec3, distance: f32, radiance: Rgb, pdf: f32, normal: Vec3) -> Lighting {
+    Lighting { wi, distance, radiance, pdf, can_be_met: true, origin, normal }
 }

@@ -77,7 +77,7 @@ impl World {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Lamp, Receiver};
+    use super::super::{Lamp, Origin, Receiver};
     use super::*;
     use crate::background::Solid;
     use crate::light::{AnyLight, Directional};
@@ -101,8 +101,8 @@ mod tests {
         let (mut counts, count) = ([0.0f32; 3], 200_000);
         for _ in 0..count {
             let light = world.sample_light(&TO, random.vec2()).unwrap();
-            counts[light.lamp.unwrap_or(2) as usize] += 1.0 / count as f32;
-            if light.lamp.is_none() {
+            counts[if let Origin::Lamp(number) = light.origin { number as usize } else { 2 }] += 1.0 / count as f32;
+            if light.origin == Origin::Background {
                 assert!(close(light.pdf, world.background_pdf(light.wi), 1e-5));
             }
         }

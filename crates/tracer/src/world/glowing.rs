@@ -1,6 +1,6 @@
 //! Shapes that shine, in the world's space.
 
-use super::emitters::{Lighting, Receiver, met};
+use super::emitters::{Lighting, Origin, Receiver, met};
 use super::standing::{Standing, standing};
 use super::{Level, Vertex};
 use crate::emitter::LightBounds;
@@ -80,7 +80,7 @@ impl Glowing {
         }
         let normal = transform.normal(sample.normal);
         let radiance = self.radiance(materials, to, wi, normal)?;
-        Some(met(wi, distance, radiance, pdf * chance, normal))
+        Some(met(Origin::Shape(self.number), wi, distance, radiance, pdf * chance, normal))
     }
 
     /// Radiance that comes from a place in the direction `wi`, whose outward normal is `normal`; `None` where nothing

@@ -1,6 +1,7 @@
 //! A light that shines from somewhere, with what is asked of it at every vertex.
 
 use crate::emitter::LightBounds;
+use crate::layer::LightGroup;
 use crate::light::AnyLight;
 use juggler_math::{Rgb, Vec3};
 
@@ -11,6 +12,8 @@ pub struct Lamp {
     pub samples: u32,
     /// [`Light::is_point`](crate::light::Light::is_point).
     pub is_point: bool,
+    /// Which group of lights it is of.
+    pub group: LightGroup,
     /// Light from everywhere, in the mean of its time.
     pub(super) ambient: Rgb,
     /// In the first of as many parts of the time that the shutter is open as there are sources.
@@ -42,6 +45,7 @@ impl Lamp {
         Self {
             samples: all().map(|light| light.shadow_samples()).fold(1, u32::max),
             is_point: all().all(|light| light.is_point()),
+            group: LightGroup::REST,
             ambient: all().fold(Rgb::BLACK, |sum, light| sum + light.ambient()) / count,
             first: Source::new(first.clone()),
             others: others.iter().cloned().map(Source::new).collect(),

@@ -20,6 +20,7 @@ mod geometry;
 mod glowing;
 mod inside;
 mod items;
+mod labels;
 mod lamp;
 mod large;
 mod level;
@@ -35,9 +36,10 @@ mod tests;
 
 pub use casters::{Caster, CasterId, Prospect};
 pub use differential::Differential;
-pub use emitters::{Lighting, Receiver};
+pub use emitters::{Lighting, Origin, Receiver};
 pub use geometry::Geometry;
 pub use juggler_bvh::{SimdLevel, simd_levels};
+pub use labels::Labels;
 pub use lamp::{Lamp, Source};
 pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
 pub use object::{Content, Object};
@@ -108,6 +110,8 @@ pub struct World {
     has_media: bool,
     has_pictures: bool,
     moves: bool,
+    labels: Labels,
+    has_groups: bool,
 }
 
 impl World {
@@ -144,6 +148,8 @@ impl World {
             has_media,
             has_pictures,
             moves,
+            labels: Labels::default(),
+            has_groups: false,
         }
     }
 

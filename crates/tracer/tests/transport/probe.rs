@@ -5,6 +5,7 @@ use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, Shot};
 use juggler_tracer::film::{AnyFilter, Rect};
 use juggler_tracer::integrator::{AnyIntegrator, Integrator};
+use juggler_tracer::layer;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::{AnyMaterial, MaterialCompiler, MaterialId};
 use juggler_tracer::render::{Control, Job, Work};
@@ -187,7 +188,16 @@ pub fn picture(
 ) -> Vec<juggler_math::Rgb> {
     let (filter, pattern) =
         (read::<AnyFilter>(r#"{"box": {}}"#).filter(samples), read::<AnySampler>(r#"{"sobol": {}}"#));
-    let job = Job { world, camera, integrator, filter, pattern: pattern.pattern(samples), samples, seed };
+    let job = Job {
+        world,
+        camera,
+        integrator,
+        filter,
+        pattern: pattern.pattern(samples),
+        samples,
+        seed,
+        layers: &layer::NONE,
+    };
     let pixels = Rect { x: 0, y: 0, width: EDGE, height: EDGE };
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }

@@ -4,6 +4,7 @@ use crate::probe::{Scene, path, read};
 use juggler_math::{Rgb, Transform, UVec2, Vec3};
 use juggler_tracer::camera::{AnyCamera, Shot};
 use juggler_tracer::film::{AnyFilter, Rect};
+use juggler_tracer::layer;
 use juggler_tracer::render::{Control, Job, Schedule, Scheduler, Stopped, Work, render};
 use juggler_tracer::sampler::AnySampler;
 use juggler_tracer::world::World;
@@ -65,6 +66,7 @@ fn threads_and_tiles_cannot_be_seen() {
         pattern: pattern.pattern(SAMPLES),
         samples: SAMPLES,
         seed: 7,
+        layers: &layer::NONE,
     };
     let region = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
     let whole = bits(&job.render(&Work::first(region, SAMPLES), &Control::default()).unwrap().means());

@@ -4,6 +4,7 @@ use super::{Session, Take};
 use crate::console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
+use crate::plan::layers::{self, Place};
 use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard};
 use crate::progress::{Watch, watched};
 use crate::reproduce::{self, SAMPLES_PER_TILE};
@@ -11,6 +12,7 @@ use juggler::film::checkpoint::{self, Checkpoint};
 use juggler::film::counts;
 use juggler::film::part::{Description, Part, PartError, Share, write};
 use juggler::film::share::{self, Work};
+use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{Header, inspect};
 use juggler::tracer::film::{Film, Rect, Summary, TILE};
 use juggler::tracer::render::{Control, Stopped};
@@ -197,6 +199,23 @@ impl Exposure<'_> {
         })
     }
 
+    /// Writes the layers that were asked for; whether the picture itself is among them.
+    fn write_layers(&self) -> Result<bool, Failure> {
+        let Take { picture, shot, .. } = self.take;
+        if picture.layers().wanted().is_empty() {
+            return Ok(false);
+        }
+        let place = layers::place(&shot.output, shot.layers_output.as_deref());
+        let (file, with_picture) = match &place {
+            Place::InPicture => (shot.output.as_str(), true),
+            Place::File(file) => (file.as_str(), false),
+        };
+        let header = picture.layers().file_header(&self.header, with_picture);
+        let writer = LayeredWriter::create(Path::new(file), &header)?;
+        picture.write_layers(&self.film, writer, with_picture)?;
+        Ok(with_picture)
+    }
+
     /// Writes the picture or the part.
     fn write(&mut self) -> Result<Summary, Failure> {
         let (picture, output) = (self.take.picture, &self.take.shot.output);
@@ -212,6 +231,10 @@ impl Exposure<'_> {
                 if matches!(picture.limit(), Limit::Time { .. }) {
                     let counts = counts::to_text(&self.film.counts());
                     self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));
+                }
+                let in_picture = self.write_layers()?;
+                if in_picture {
+                    return Ok(picture.develop(&self.film, |_| Ok::<(), Failure>(()))?);
                 }
                 let writer = self.session.writer(encoding.format, output, &self.header)?;
                 Ok(picture.write_film(&self.film, writer)?)

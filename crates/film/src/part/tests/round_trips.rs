@@ -190,7 +190,7 @@ fn a_tile_in_too_many_runs_is_refused() {
     let region = Rect { x: 0, y: 0, width: 1, height: 1 };
     let mut tile = Tile::new(region);
     for number in 0..4097 {
-        tile.add(Run { samples: number * 32..number * 32 + 16, sums: vec![Sum::default()] }).unwrap();
+        tile.add(Run::new(number * 32..number * 32 + 16, vec![Sum::default()])).unwrap();
     }
     let error = write(&path, &description(region, 1 << 20), [(0, tile)]).unwrap_err();
     assert!(error.to_string().contains("4097 runs"), "{error}");

@@ -9,8 +9,9 @@
 
 mod physical;
 
-use super::{Emit, Integrator, PathState};
+use super::{Emit, Integrator, PathState, Sight};
 use crate::bsdf::{Cone, Highlight, Phong, cone, fresnel};
+use crate::layer::LightGroup;
 use crate::sampler::Sampler;
 use crate::surface::Surface;
 use crate::world::{Lamp, Vertex, World};
@@ -58,7 +59,12 @@ impl Integrator for Classic {
         let Some(phong) = world.phong(vertex) else { return self.physical(world, ray, path, vertex, emit) };
         let seen = Seen::new(ray, &vertex.surface, &phong);
         let mut sampler = path.sampler;
-        self.ambient(world, &seen, sampler, emit);
+        if emit.records() {
+            let is_smooth = phong.diffuse.is_black();
+            let (normal, albedo) = (seen.normal, phong.diffuse);
+            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth });
+        }
+        self.ambient(world, &seen, sampler, world.shape_group(vertex.object), emit);
         sampler.skip(1);
         for (number, lamp) in world.lamps().iter().enumerate() {
             light(lamp, number, &seen, &sampler, emit);
@@ -70,7 +76,7 @@ impl Integrator for Classic {
     }
 
     fn escape(&self, world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
-        emit.add(world.background(ray));
+        emit.add(world.background(ray), world.background_group());
     }
 }
 
@@ -86,17 +92,17 @@ impl<'a> Seen<'a> {
 impl Classic {
     /// Emission and ambient light. The share that occlusion may take hangs on one ray over the hemisphere,
     /// even over its solid angle.
-    fn ambient(&self, world: &World, seen: &Seen, mut sampler: Sampler, emit: &mut Emit) {
+    fn ambient(&self, world: &World, seen: &Seen, mut sampler: Sampler, group: LightGroup, emit: &mut Emit) {
         let ambient = seen.phong.ambient * world.ambient();
         let Some(distance) = self.occlusion_distance.filter(|_| seen.phong.occlusion > 0.0) else {
-            emit.add(seen.phong.emission + ambient);
+            emit.add(seen.phong.emission + ambient, group);
             return;
         };
-        emit.add(seen.phong.emission + ambient * (1.0 - seen.phong.occlusion));
+        emit.add(seen.phong.emission + ambient * (1.0 - seen.phong.occlusion), group);
         let any = warp::uniform_sphere(sampler.next_2d());
         let direction = if any.dot(seen.normal) < 0.0 { -any } else { any };
         let ray = seen.surface.spawn(direction, seen.time).up_to(distance);
-        emit.if_visible(ray, ambient * seen.phong.occlusion);
+        emit.if_visible(ray, ambient * seen.phong.occlusion, LightGroup::REST);
     }
 
     /// Mirror and transparency.
@@ -170,7 +176,7 @@ fn light(lamp: &Lamp, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut 
             continue;
         }
         let ray = seen.surface.spawn_to(sample.wi, sample.distance, seen.time);
-        emit.if_light_visible(number, ray, reflected * sample.radiance * share);
+        emit.if_light_visible(number, ray, reflected * sample.radiance * share, lamp.group);
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::Classic;
 use crate::bsdf::{BsdfSample, Scatter};
-use crate::integrator::{Emit, PathState};
+use crate::integrator::{Emit, PathState, Sight};
 use crate::material::Shade;
 use crate::sampler::Sampler;
 use crate::world::{Lamp, Vertex, World};
@@ -35,7 +35,11 @@ impl Classic {
         let seen = Seen { vertex, shade: &shade, wo, time: ray.time };
         let ambient = world.ambient();
         let reflected = if ambient.is_black() { Rgb::BLACK } else { seen.shade.bsdf.albedo(wo) * ambient };
-        emit.add(seen.shade.emission + reflected);
+        if emit.records() {
+            let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
+            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth: shade.bsdf.is_specular() });
+        }
+        emit.add(seen.shade.emission + reflected, world.shape_group(vertex.object));
         if !seen.shade.bsdf.is_specular() {
             for (number, lamp) in (0..).zip(world.lamps()) {
                 seen.light(lamp, number as usize, &sampler.at(number), emit);
@@ -81,7 +85,7 @@ impl Seen<'_> {
             let (scattered, _) = self.shade.bsdf.eval_pdf(self.wo, self.shade.frame.to_local(sample.wi));
             if !scattered.is_black() {
                 let ray = self.vertex.surface.spawn_to(sample.wi, sample.distance, self.time);
-                emit.if_light_visible(number, ray, sample.radiance * scattered * (share / sample.pdf));
+                emit.if_light_visible(number, ray, sample.radiance * scattered * (share / sample.pdf), lamp.group);
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::bsdf::{BsdfSample, Scatter};
 use crate::manifold::{Bend, End, Way, bends, spread};
 use crate::medium::Interiors;
 use crate::surface::Surface;
-use crate::world::{Caster, Lighting, Receiver, Vertex, World};
+use crate::world::{Caster, Lighting, Origin, Receiver, Vertex, World};
 use arrayvec::ArrayVec;
 use juggler_math::{Ray, Rgb, Vec2, Vec3, robust};
 
@@ -107,12 +107,12 @@ struct Asked<'a> {
 impl Asked<'_> {
     /// What leaves the light along the way, as seen from the centre of the ball, and the density of the way.
     fn light(&self, last: Vec3, time: f32) -> Option<(Rgb, f32)> {
-        let Lighting { radiance, distance, lamp, normal, wi, .. } = *self.light;
+        let Lighting { radiance, distance, origin, normal, wi, .. } = *self.light;
         if distance == f32::INFINITY {
             return Some((radiance, self.asked));
         }
         let way = self.place - last;
-        let Some(lamp) = lamp else {
+        let Origin::Lamp(lamp) = origin else {
             let tilt = if normal == Vec3::ZERO { 0.0 } else { ratio(normal, wi, way.normalize_or_zero()) };
             return (tilt > 0.0).then_some((radiance, self.asked * tilt));
         };
@@ -156,7 +156,9 @@ impl Seen<'_> {
             return;
         }
         let thrown = radiance * scattered * ask.caster.throughput(ask.way, bend.sine);
-        emit.if_all_free(ask.legs(self.surface, bend, self.time), thrown * ask.light.gain(asked, pdf, self.shade));
+        let group = ask.world.light_group(ask.light.origin);
+        let legs = ask.legs(self.surface, bend, self.time);
+        emit.if_all_free(legs, thrown * ask.light.gain(asked, pdf, self.shade), group);
     }
 
     /// What a path knows of balls that goes on from here, `object`, as `sample` says, into the solids `inside`.

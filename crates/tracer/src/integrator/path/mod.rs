@@ -7,7 +7,7 @@
 //! {"path": {"max_depth": 16, "roulette_depth": 4}}
 //! ```
 
-use super::{Clamp, Emit, Integrator, PathState};
+use super::{Clamp, Emit, Integrator, PathState, Sight};
 use crate::world::{Receiver, Shadows, Vertex, World};
 use caustic::Met;
 use juggler_math::{Ray, Rgb, Vec2};
@@ -137,11 +137,16 @@ impl Integrator for Path {
         if shade.opacity < 1.0 && choice.y >= shade.opacity {
             return surface::pass(world, ray, path, vertex, emit);
         }
+        if emit.records() {
+            let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
+            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth: shade.bsdf.is_specular() });
+        }
         if !shade.emission.is_black() {
             let light = || world.light_pdf(&path.trail.receiver(ray.time), ray, vertex);
             let bent = |to: &Receiver, way: &Ray| world.light_pdf(to, way, vertex) * caustic::tilt(way, ray, vertex);
             let end = Met::Surface(vertex.surface.point);
-            emit.add(shade.emission * caustic::weight(world, path, ray, light, end, bent));
+            let weight = caustic::weight(world, path, ray, light, end, bent);
+            emit.add(shade.emission * weight, world.shape_group(vertex.object));
         }
         if path.depth + 1 >= self.max_depth {
             return;
@@ -158,7 +163,8 @@ impl Integrator for Path {
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
         if !self.flies(world, ray, f32::INFINITY, path, emit) {
             let light = || world.background_pdf(ray.direction);
-            emit.add(world.background(ray) * caustic::weight(world, path, ray, light, Met::Background, |_, _| light()));
+            let weight = caustic::weight(world, path, ray, light, Met::Background, |_, _| light());
+            emit.add(world.background(ray) * weight, world.background_group());
         }
     }
 

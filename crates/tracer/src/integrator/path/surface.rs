@@ -7,7 +7,7 @@ use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
 use crate::medium::{InteriorId, Interiors};
 use crate::surface::Surface;
-use crate::world::{Lighting, MAX_PASSED, Prospect, Receiver, Vertex, World};
+use crate::world::{Lighting, MAX_PASSED, Origin, Prospect, Receiver, Vertex, World};
 use juggler_math::{Ray, Rgb, Vec3};
 
 /// A vertex as seen by the one who looks.
@@ -59,7 +59,7 @@ impl Lighting {
     #[inline]
     pub fn gain(&self, asked: f32, met: f32, shade: &Shade) -> f32 {
         let share = if self.can_be_met { power_heuristic(asked, met) } else { 1.0 };
-        let scale = if self.lamp.is_some() { shade.lamp_scale } else { 1.0 };
+        let scale = if matches!(self.origin, Origin::Lamp(_)) { shade.lamp_scale } else { 1.0 };
         share * scale / asked
     }
 }
@@ -142,13 +142,13 @@ impl<'a> Seen<'a> {
             let u = sampler.part(part, u32::from(count)).next_2d();
             if let Some(light) = world.sample_light(&to, u) {
                 let pdf = light.pdf * f32::from(count);
-                self.ask_light(&Lighting { pdf, ..light }, path, emit);
+                self.ask_light(&Lighting { pdf, ..light }, world, path, emit);
             }
         }
     }
 
     /// What a light brings that is picked with its density.
-    fn ask_light(&self, light: &Lighting, path: &PathState, emit: &mut Emit) {
+    fn ask_light(&self, light: &Lighting, world: &World, path: &PathState, emit: &mut Emit) {
         let wi = self.shade.frame.to_local(light.wi);
         if !self.agree(light.wi, wi) {
             return;
@@ -159,7 +159,8 @@ impl<'a> Seen<'a> {
         }
         let ray = self.surface.spawn_to(light.wi, light.distance, self.time);
         let inside = self.inside(path, wi);
-        emit.if_visible_inside(ray, light.radiance * scattered * light.gain(light.pdf, pdf, self.shade), inside);
+        let radiance = light.radiance * scattered * light.gain(light.pdf, pdf, self.shade);
+        emit.if_visible_inside(ray, radiance, world.light_group(light.origin), inside);
     }
 
     /// The solids that a path is in that goes on from here in the direction `wi`, which is local.

@@ -38,7 +38,8 @@ impl Path {
             let scattered = phase.eval(ray.direction.dot(light.wi));
             let share = if light.can_be_met { power_heuristic(light.pdf, scattered) } else { 1.0 };
             let shadow = from(light.wi).up_to(light.distance * SHORT_OF);
-            emit.if_visible_inside(shadow, light.radiance * (scattered * share / light.pdf), path.trail.inside);
+            let (radiance, group) = (light.radiance * (scattered * share / light.pdf), world.light_group(light.origin));
+            emit.if_visible_inside(shadow, radiance, group, path.trail.inside);
         }
         let wi = phase.sample(ray.direction, path.sampler.at(dimension::SCATTER).next_2d());
         let mut scattered = path.trail.scattered;

@@ -1,0 +1,242 @@
+//! OpenEXR with a part for each layer: scanlines, channels as floats or halves. As for a single picture, the headers are
+//! written here, in a fixed order, and blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
+
+use super::{LayerHeader, LayerRows, LayeredHeader};
+use crate::output::WriteSeek;
+use crate::{ExrCompression, Format, ImageError, SampleDepth};
+use exr::block::{BlockIndex, UncompressedBlock};
+use exr::error::Error as ExrError;
+use exr::math::Vec2;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
+use exr::meta::header::Header as ExrHeader;
+use exr::prelude::{Compression, f16};
+use std::io::{self, SeekFrom};
+
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// The version, the flag for names of more than 31 bytes and that for several parts.
+const VERSION: u32 = 2;
+const LONG_NAMES: u32 = 0x400;
+const MULTI_PART: u32 = 0x1000;
+
+/// Streams blocks of rows of all parts into an EXR.
+pub struct Writer {
+    bytes: Box<dyn WriteSeek>,
+    place: String,
+    headers: Vec<ExrHeader>,
+    parts: Vec<Part>,
+    width: usize,
+    height: usize,
+    block_rows: usize,
+    /// Where the tables of offsets stand, and the file's end so far.
+    tables: u64,
+    end: u64,
+}
+
+/// One part on its way.
+struct Part {
+    depth: SampleDepth,
+    /// Which of the layer's channels come in the order of their names.
+    order: Vec<usize>,
+    /// Rows of a block that is not full yet, channel by channel.
+    pending: Vec<Vec<f32>>,
+    offsets: Vec<u64>,
+}
+
+impl Writer {
+    pub fn new(mut bytes: Box<dyn WriteSeek>, place: String, header: &LayeredHeader) -> Result<Self, ImageError> {
+        let (width, height) = (header.width as usize, header.height as usize);
+        let block_rows = packing(header.compression).scan_lines_per_block();
+        let blocks = height.div_ceil(block_rows);
+        let start = header_bytes(header, blocks);
+        let tables = start.len() as u64;
+        let end = tables + 8 * (blocks * header.layers.len()) as u64;
+        let written = bytes.write_all(&start).and_then(|()| bytes.seek(SeekFrom::Start(end)));
+        if let Err(source) = written {
+            return Err(ImageError::Write { place, source });
+        }
+        let headers = header.layers.iter().map(|layer| description(layer, header)).collect();
+        let part = |layer: &LayerHeader| {
+            let pending = vec![Vec::new(); layer.channels.len()];
+            Part { depth: layer.depth, order: by_name(layer), pending, offsets: Vec::with_capacity(blocks) }
+        };
+        let parts = header.layers.iter().map(part).collect();
+        Ok(Self { bytes, place, headers, parts, width, height, block_rows, tables, end })
+    }
+
+    /// Writes what waits of a part.
+    fn write_block(&mut self, number: usize) -> Result<(), ImageError> {
+        let Some(part) = self.parts.get_mut(number) else { return Ok(()) };
+        let rows = part.pending.first().map_or(0, Vec::len) / self.width.max(1);
+        let y = part.offsets.len() * self.block_rows;
+        let (pixel_position, pixel_size) = (Vec2(0, y), Vec2(self.width, rows));
+        let index = BlockIndex { layer: number, pixel_position, pixel_size, level: Vec2(0, 0) };
+        let data = part.planes(self.width);
+        part.pending.iter_mut().for_each(Vec::clear);
+        part.offsets.push(self.end);
+        let mut chunk = Vec::new();
+        let packed = UncompressedBlock { index, data }.compress_to_chunk(&self.headers);
+        let packed = packed.and_then(|packed| packed.write(&mut chunk, self.headers.len()));
+        packed.map_err(|error| self.refused(&error))?;
+        self.end += chunk.len() as u64;
+        self.bytes.write_all(&chunk).map_err(|error| self.failed(error))
+    }
+
+    fn failed(&self, source: io::Error) -> ImageError {
+        ImageError::Write { place: self.place.clone(), source }
+    }
+
+    fn refused(&self, error: &ExrError) -> ImageError {
+        ImageError::Encode { place: self.place.clone(), format: Format::Exr, message: error.to_string() }
+    }
+
+    /// Takes one row of all channels, and writes the blocks that it fills.
+    fn write_row(&mut self, channels: &[&[f32]], row: usize) -> Result<(), ImageError> {
+        let mut channels = channels.iter();
+        let pixels = row * self.width..(row + 1) * self.width;
+        let full = self.width * self.block_rows;
+        for number in 0..self.parts.len() {
+            let Some(part) = self.parts.get_mut(number) else { continue };
+            for (pending, channel) in part.pending.iter_mut().zip(&mut channels) {
+                pending.extend_from_slice(channel.get(pixels.clone()).unwrap_or_default());
+            }
+            let waiting = part.pending.first().map_or(0, Vec::len);
+            let done = part.offsets.len() * self.block_rows + waiting / self.width.max(1);
+            if waiting == full || done == self.height {
+                self.write_block(number)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl LayerRows for Writer {
+    fn write_rows(&mut self, channels: &[&[f32]]) -> Result<(), ImageError> {
+        let rows = channels.first().map_or(0, |channel| channel.len()) / self.width.max(1);
+        (0..rows).try_for_each(|row| self.write_row(channels, row))
+    }
+
+    fn finish(&mut self) -> Result<(), ImageError> {
+        let offsets = self.parts.iter().flat_map(|part| &part.offsets);
+        let tables: Vec<u8> = offsets.flat_map(|offset| offset.to_le_bytes()).collect();
+        let written = self.bytes.seek(SeekFrom::Start(self.tables)).and_then(|_| self.bytes.write_all(&tables));
+        written.and_then(|()| self.bytes.flush()).map_err(|error| self.failed(error))
+    }
+}
+
+impl Part {
+    /// A block's samples: row by row, in each channel after channel by name.
+    fn planes(&self, width: usize) -> Vec<u8> {
+        let rows = self.pending.first().map_or(0, Vec::len) / width.max(1);
+        let mut data = Vec::new();
+        for row in 0..rows {
+            for channel in &self.order {
+                let samples = self.pending.get(*channel).and_then(|values| values.get(row * width..(row + 1) * width));
+                let samples = samples.unwrap_or_default().iter();
+                match self.depth {
+                    SampleDepth::Float => data.extend(samples.flat_map(|value| value.to_ne_bytes())),
+                    SampleDepth::Half => data.extend(samples.flat_map(|value| f16::from_f32(*value).to_ne_bytes())),
+                }
+            }
+        }
+        data
+    }
+}
+
+/// Channels stand in the order of their names.
+fn by_name(layer: &LayerHeader) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..layer.channels.len()).collect();
+    order.sort_by(|a, b| layer.channels.get(*a).cmp(&layer.channels.get(*b)));
+    order
+}
+
+fn packing(compression: ExrCompression) -> Compression {
+    match compression {
+        ExrCompression::None => Compression::Uncompressed,
+        ExrCompression::Rle => Compression::RLE,
+        ExrCompression::Zip => Compression::ZIP16,
+    }
+}
+
+/// What the packer needs to know of a part.
+fn description(layer: &LayerHeader, header: &LayeredHeader) -> ExrHeader {
+    let sample_type = match layer.depth {
+        SampleDepth::Float => SampleType::F32,
+        SampleDepth::Half => SampleType::F16,
+    };
+    let names = by_name(layer).into_iter().filter_map(|channel| layer.channels.get(channel));
+    let channels = names.map(|name| ChannelDescription::new(name.as_str(), sample_type, false)).collect();
+    let size = (header.width as usize, header.height as usize);
+    let plain = ExrHeader::new(layer.name.as_str().into(), size, channels);
+    plain.with_encoding(packing(header.compression), BlockDescription::ScanLines, LineOrder::Increasing)
+}
+
+/// Magic, version and the headers of all parts.
+fn header_bytes(header: &LayeredHeader, blocks: usize) -> Vec<u8> {
+    let several = header.layers.len() > 1;
+    let texts = header.layers.iter().flat_map(|layer| &layer.metadata).chain(&header.metadata);
+    let long = texts.map(|(key, _)| key).chain(header.layers.iter().flat_map(|layer| &layer.channels));
+    let long = long.into_iter().any(|name| name.len() > 31);
+    let version = VERSION | if long { LONG_NAMES } else { 0 } | if several { MULTI_PART } else { 0 };
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(version.to_le_bytes());
+    for (number, layer) in header.layers.iter().enumerate() {
+        // Texts of the picture stand in its first part.
+        let common = if number == 0 { header.metadata.as_slice() } else { &[] };
+        part_bytes(header, layer, common, several.then_some(blocks), &mut bytes);
+    }
+    if several {
+        bytes.push(0);
+    }
+    bytes
+}
+
+/// The attributes of one part, and the zero after them; `blocks` where there are several parts.
+fn part_bytes(
+    header: &LayeredHeader,
+    layer: &LayerHeader,
+    common: &[(String, String)],
+    blocks: Option<usize>,
+    bytes: &mut Vec<u8>,
+) {
+    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
+        bytes.extend(name.bytes().filter(|&b| b != 0).take(255).chain([0]));
+        bytes.extend(kind.bytes().chain([0]));
+        bytes.extend((value.len() as u32).to_le_bytes());
+        bytes.extend(value);
+    };
+    let window: Vec<u8> = [0, 0, header.width - 1, header.height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
+    attribute("channels", "chlist", &channel_list(layer));
+    let code = match header.compression {
+        ExrCompression::None => 0,
+        ExrCompression::Rle => 1,
+        ExrCompression::Zip => 3,
+    };
+    attribute("compression", "compression", &[code]);
+    attribute("dataWindow", "box2i", &window);
+    attribute("displayWindow", "box2i", &window);
+    attribute("lineOrder", "lineOrder", &[0]);
+    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
+    attribute("screenWindowCenter", "v2f", &[0; 8]);
+    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+    if let Some(blocks) = blocks {
+        attribute("chunkCount", "int", &(blocks as u32).to_le_bytes());
+        attribute("name", "string", layer.name.as_bytes());
+        attribute("type", "string", b"scanlineimage");
+    }
+    for (key, text) in common.iter().chain(&layer.metadata).filter(|(key, _)| !key.is_empty()) {
+        attribute(key, "string", text.as_bytes());
+    }
+    bytes.push(0);
+}
+
+fn channel_list(layer: &LayerHeader) -> Vec<u8> {
+    let pixel_type = if layer.depth == SampleDepth::Half { 1u32 } else { 2 };
+    let mut channels = Vec::new();
+    for name in by_name(layer).into_iter().filter_map(|channel| layer.channels.get(channel)) {
+        channels.extend(name.bytes().filter(|&b| b != 0).chain([0]));
+        channels.extend([pixel_type, 0, 1, 1].into_iter().flat_map(u32::to_le_bytes));
+    }
+    channels.push(0);
+    channels
+}

@@ -1,0 +1,90 @@
+use super::*;
+use exr::prelude::{ReadChannels, ReadLayers};
+
+fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
+    let layers = names.iter().map(|(name, channels)| LayerHeader::new(name, channels));
+    let mut layers: Vec<LayerHeader> = std::iter::once(LayerHeader::beauty(SampleDepth::Half)).chain(layers).collect();
+    layers[1].metadata.push(("cryptomatte/abcdefg/manifest".into(), "{}".into()));
+    let metadata = vec![("Software".to_owned(), "Juggler".to_owned())];
+    LayeredHeader { width: 5, height: 37, layers, compression: ExrCompression::Zip, metadata }
+}
+
+fn value(channel: usize, pixel: usize) -> f32 {
+    (channel * 1000 + pixel) as f32 * 0.25
+}
+
+fn written(path: &Path, header: &LayeredHeader, pieces: &[usize]) {
+    let channels: usize = header.layers.iter().map(|layer| layer.channels.len()).sum();
+    let mut writer = LayeredWriter::create(path, header).unwrap();
+    let mut first = 0;
+    for rows in pieces {
+        let pixels = first * 5..(first + rows) * 5;
+        let rows: Vec<Vec<f32>> = (0..channels).map(|c| pixels.clone().map(|p| value(c, p)).collect()).collect();
+        writer.write_rows(&rows).unwrap();
+        first += rows.first().map_or(0, Vec::len) / 5;
+    }
+    writer.finish().unwrap();
+}
+
+#[test]
+fn parts_are_what_an_independent_reader_finds() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = header(&[("normal", &["X", "Y", "Z"]), ("depth", &["Z"]), ("uv", &["U", "V"])]);
+    let (one, two) = (folder.path().join("one.exr"), folder.path().join("two.exr"));
+    written(&one, &header, &[37]);
+    written(&two, &header, &[1, 16, 3, 17]);
+    assert_eq!(std::fs::read(&one).unwrap(), std::fs::read(&two).unwrap(), "however rows are cut");
+    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
+    let image = reader.all_layers().all_attributes().non_parallel().from_file(&one).unwrap();
+    let found: Vec<(String, Vec<(String, Vec<f32>)>)> = image
+        .layer_data
+        .iter()
+        .map(|layer| {
+            let channels = layer.channel_data.list.iter();
+            let channel = |c: &exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
+                (c.name.to_string(), c.sample_data.values_as_f32().collect())
+            };
+            (layer.attributes.layer_name.clone().unwrap().to_string(), channels.map(channel).collect())
+        })
+        .collect();
+    let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["beauty", "normal", "depth", "uv"]);
+    let expected = [
+        ("B", 2),
+        ("G", 1),
+        ("R", 0),
+        ("normal.X", 3),
+        ("normal.Y", 4),
+        ("normal.Z", 5),
+        ("depth.Z", 6),
+        ("uv.U", 7),
+        ("uv.V", 8),
+    ];
+    let channels: Vec<&(String, Vec<f32>)> = found.iter().flat_map(|(_, channels)| channels).collect();
+    assert_eq!(channels.len(), expected.len());
+    for ((name, values), (wanted, number)) in channels.into_iter().zip(expected) {
+        assert_eq!(name, wanted);
+        for (pixel, found) in values.iter().enumerate() {
+            assert_eq!(*found, value(number, pixel), "{name} {pixel}");
+        }
+    }
+}
+
+#[test]
+fn a_file_for_each_layer_and_arrays_for_numpy() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = header(&[("depth", &["Z"])]);
+    written(&folder.path().join("a.{}.npy"), &header, &[30, 7]);
+    let bytes = std::fs::read(folder.path().join("a.beauty.npy")).unwrap();
+    let length = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    assert!(bytes.starts_with(b"\x93NUMPY\x01\x00") && length % 64 == 0 && bytes[length - 1] == b'\n');
+    assert!(std::str::from_utf8(&bytes[10..length]).unwrap().contains("'shape': (37, 5, 3)"));
+    let values: Vec<f32> = bytes[length..].as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect();
+    assert_eq!(values.len(), 37 * 5 * 3);
+    assert_eq!((values[0], values[1], values[3 * 184 + 2]), (value(0, 0), value(1, 0), value(2, 184)));
+    assert!(folder.path().join("a.depth.npy").exists());
+    for (name, layers) in [("a.npy", 2), ("a.{}.png", 1), ("a", 1)] {
+        let header = LayeredHeader { layers: header.layers[..layers].to_vec(), ..header.clone() };
+        assert!(matches!(LayeredWriter::create(&folder.path().join(name), &header), Err(ImageError::Layers { .. })));
+    }
+}

@@ -1,0 +1,71 @@
+//! What belongs together, and its names: entries of the scene, materials, groups of lights.
+
+use crate::description::Description;
+use juggler_tracer::layer::LightGroup;
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::material::MaterialId;
+use juggler_tracer::world::{Labels, Lamp};
+
+/// What light is called that belongs to no group.
+pub const REST: &str = "rest";
+
+/// Names of what masks and layers tell apart.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Names {
+    /// Of each entry of the scene's `objects`, in order: its own name, or its place.
+    pub objects: Vec<String>,
+    /// Of each material that has one, by number, rising.
+    pub materials: Vec<(MaterialId, String)>,
+    /// Of each group of lights, by number; the first is [`REST`].
+    pub light_groups: Vec<String>,
+}
+
+impl Names {
+    /// Of a scene.
+    pub fn of(scene: &Description) -> Self {
+        let name = |(i, name): (usize, &Option<String>)| name.clone().unwrap_or_else(|| format!("objects[{i}]"));
+        let objects = scene.objects.iter().map(|object| &object.name).enumerate().map(name).collect();
+        let mut light_groups = vec![REST.to_owned()];
+        let of_lights = scene.lights.iter().filter_map(|light| light.light_group());
+        let of_objects = scene.objects.iter().filter_map(|object| object.light_group.as_deref());
+        for name in of_lights.chain(of_objects).chain(scene.background_light_group.as_deref()) {
+            if !light_groups.iter().any(|known| known == name) {
+                light_groups.push(name.to_owned());
+            }
+        }
+        Self { objects, materials: Vec::new(), light_groups }
+    }
+
+    /// Of a material by number: its own, or its number.
+    pub fn material(&self, number: u32) -> String {
+        let found = self.materials.binary_search_by_key(&number, |(id, _)| id.0).ok();
+        let name = found.and_then(|at| self.materials.get(at)).map(|(_, name)| name.clone());
+        name.unwrap_or_else(|| format!("material {number}"))
+    }
+
+    /// Of an entry of the scene's objects by number.
+    pub fn object(&self, number: u32) -> String {
+        self.objects.get(number as usize).cloned().unwrap_or_else(|| format!("objects[{number}]"))
+    }
+
+    fn group(&self, name: Option<&str>) -> LightGroup {
+        let place = name.and_then(|name| self.light_groups.iter().position(|known| known == name));
+        // There are fewer than that: `settings` checks it.
+        place.and_then(|place| u16::try_from(place).ok()).map_or(LightGroup::REST, LightGroup)
+    }
+
+    /// Says of lamps which group they are of.
+    pub fn mark(&self, lamps: &mut [Lamp], lights: &[AnyLight]) {
+        for (lamp, light) in lamps.iter_mut().zip(lights) {
+            lamp.group = self.group(light.light_group());
+        }
+    }
+
+    /// The same of all else that shines; `entries` are the first shapes of the scene's objects.
+    pub fn labels(&self, scene: &Description, entries: Vec<u32>) -> Labels {
+        let any = scene.objects.iter().any(|object| object.light_group.is_some());
+        let of = if any { scene.objects.as_slice() } else { &[] };
+        let groups = of.iter().map(|object| self.group(object.light_group.as_deref())).collect();
+        Labels { entries, groups, background: self.group(scene.background_light_group.as_deref()) }
+    }
+}

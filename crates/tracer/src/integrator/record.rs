@@ -1,0 +1,159 @@
+//! Recording layers: what samples have beside their radiance.
+
+use super::{Emit, Way};
+use crate::film::{MASKS, Mark};
+use crate::layer::{Guide, Layer, Layers, LightGroup};
+use crate::world::{Vertex, World};
+use juggler_math::{Ray, Rgb, Vec3};
+
+/// The layers of some samples.
+#[derive(Debug)]
+pub(crate) struct Record {
+    layers: Layers,
+    /// Where light goes by its way, and by its group.
+    ways: [Option<usize>; 3],
+    groups: Vec<Option<usize>>,
+    /// Where all light goes.
+    color: Option<usize>,
+    /// What the filter makes of each sample.
+    weights: Vec<f32>,
+    /// Whether it is known what denoising of each sample is guided by.
+    is_guided: Vec<bool>,
+    /// As many a sample as there are layers.
+    pub planes: Vec<Rgb>,
+    /// What each sample shows; nothing where nobody asks.
+    pub marks: Vec<Mark>,
+}
+
+impl Record {
+    pub fn new(layers: &Layers) -> Self {
+        let ways = [Layer::Emission, Layer::Direct, Layer::Indirect].map(|layer| layers.place(layer));
+        let mut groups = Vec::new();
+        for (place, layer) in layers.planes.iter().enumerate() {
+            if let Layer::Group(LightGroup(number)) = *layer {
+                let number = usize::from(number);
+                groups.resize(groups.len().max(number + 1), None);
+                groups[number] = Some(place);
+            }
+        }
+        let color = layers.place(Layer::Half(Guide::Color));
+        let layers = layers.clone();
+        Self {
+            layers,
+            ways,
+            groups,
+            color,
+            weights: Vec::new(),
+            is_guided: Vec::new(),
+            planes: Vec::new(),
+            marks: Vec::new(),
+        }
+    }
+
+    /// For samples of these weights in the filter.
+    pub fn begin(&mut self, weights: impl Iterator<Item = f32>) {
+        self.weights.clear();
+        self.weights.extend(weights);
+        self.is_guided.clear();
+        self.is_guided.resize(self.weights.len(), false);
+        self.planes.clear();
+        self.planes.resize(self.weights.len() * self.layers.planes.len(), Rgb::BLACK);
+        self.marks.clear();
+        if self.layers.masks {
+            self.marks.resize(self.weights.len(), Mark::EMPTY);
+        }
+    }
+
+    fn add(&mut self, slot: usize, place: Option<usize>, value: Rgb) {
+        if let Some(place) = place {
+            self.planes[slot * self.layers.planes.len() + place] += value;
+        }
+    }
+
+    /// Light that a sample gathers.
+    #[inline]
+    pub fn light(&mut self, slot: usize, way: Way, group: LightGroup, radiance: Rgb) {
+        self.add(slot, self.color, radiance);
+        self.add(slot, self.ways[way as usize], radiance);
+        self.add(slot, self.groups.get(usize::from(group.0)).copied().flatten(), radiance);
+    }
+
+    /// What the camera's ray of a sample met first.
+    fn see(&mut self, slot: usize, sight: &Sight) {
+        let Sight { ray, vertex, normal, albedo, .. } = *sight;
+        let (surface, weight) = (&vertex.surface, self.weights[slot]);
+        for place in 0..self.layers.planes.len() {
+            let value = match self.layers.planes[place] {
+                Layer::Coverage => Rgb::new(1.0, 0.0, 0.0),
+                Layer::Albedo => albedo,
+                Layer::Normal => color(normal),
+                Layer::GeometricNormal => color(surface.normal),
+                Layer::Depth => Rgb::new(ray.t_max, 1.0, 0.0),
+                Layer::Position => color(surface.point),
+                Layer::Uv => Rgb::new(surface.uv.x, surface.uv.y, 1.0),
+                Layer::Guide(Guide::Depth) | Layer::Half(Guide::Depth) => Rgb::new(ray.t_max, 1.0, 0.0),
+                _ => continue,
+            };
+            self.add(slot, Some(place), value * weight);
+        }
+        if let Some(mark) = self.marks.get_mut(slot) {
+            let things: [u32; MASKS] = [sight.world.entry_of(vertex.object), vertex.material.0, vertex.object];
+            *mark = Mark { things, weight };
+        }
+    }
+
+    /// What it met behind mirrors and clear glass, which colour it by `weight`.
+    fn guide(&mut self, slot: usize, weight: Rgb, sight: &Sight) {
+        if std::mem::replace(&mut self.is_guided[slot], true) {
+            return;
+        }
+        for place in 0..self.layers.planes.len() {
+            let value = match self.layers.planes[place] {
+                Layer::Guide(Guide::Albedo) | Layer::Half(Guide::Albedo) => sight.albedo * weight,
+                Layer::Guide(Guide::Normal) | Layer::Half(Guide::Normal) => color(sight.normal) * self.weights[slot],
+                _ => continue,
+            };
+            self.add(slot, Some(place), value);
+        }
+    }
+}
+
+/// What a ray met.
+pub struct Sight<'a> {
+    /// Where that is.
+    pub world: &'a World,
+    /// Its end drawn in.
+    pub ray: &'a Ray,
+    /// The place.
+    pub vertex: &'a Vertex,
+    /// Unit shading normal there, as maps have turned it.
+    pub normal: Vec3,
+    /// The colour that it has without light.
+    pub albedo: Rgb,
+    /// Whether it only mirrors or refracts, so that what is behind it is what counts.
+    pub is_smooth: bool,
+}
+
+fn color(vector: Vec3) -> Rgb {
+    Rgb::new(vector.x, vector.y, vector.z)
+}
+
+impl Emit<'_> {
+    /// Whether anybody asks what is seen.
+    #[inline]
+    pub fn records(&self) -> bool {
+        self.harvest.record.is_some()
+    }
+
+    /// Records what the path met.
+    pub fn see(&mut self, sight: &Sight) {
+        let (slot, trail) = (self.path.slot as usize, &self.path.trail);
+        let Some(record) = &mut self.harvest.record else { return };
+        if self.path.depth == 0 {
+            record.see(slot, sight);
+        }
+        if trail.scattered.is_first() && !sight.is_smooth {
+            record.guide(slot, self.weight, sight);
+        }
+    }
+}
