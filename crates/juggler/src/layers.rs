@@ -184,6 +184,11 @@ impl LayerSet {
         &self.wanted
     }
 
+    /// The names of groups of lights whose light is kept apart, by number; nothing where none is.
+    pub fn light_groups(&self) -> &[String] {
+        if self.wanted.contains(&Aov::LightGroups) { &self.names.light_groups } else { &[] }
+    }
+
     /// As film parts say it.
     pub fn to_part(&self) -> Layered {
         if self.is_empty() {

@@ -9,6 +9,7 @@ mod compare;
 mod convert;
 mod info;
 mod merge;
+mod relight;
 mod render;
 mod scenes;
 mod schema;
@@ -32,6 +33,8 @@ pub enum Command {
     Info(info::Info),
     /// Join parts of a picture: to the picture, with the bytes of a single render, or to a larger part
     Merge(merge::Merge),
+    /// Mix the lights of a rendered film anew: brighter, darker, of another colour, without tracing a ray
+    Relight(relight::Relight),
     /// Write the JSON Schema of the scene format
     Schema,
     /// Write any readable scene as scene JSON
@@ -57,6 +60,7 @@ impl Command {
             Self::Check(check) => check.run(),
             Self::Info(info) => info.run(),
             Self::Merge(merge) => merge.run(),
+            Self::Relight(relight) => relight.run(),
             Self::Schema => schema::run(),
             Self::Convert(convert) => convert.run(),
             Self::Compare(compare) => compare.run(),

@@ -1,6 +1,6 @@
 //! Layers beside the picture, from the command line to the file.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, SCENE};
 use std::fs;
 
 const BALL: &str = "ball.json --size 48x36 --samples 20 --integrator path";
@@ -59,4 +59,38 @@ fn what_cannot_be_is_said() {
     assert!(other.contains("layers: depth instead of albedo,depth"), "{other}");
     folder.good("render ball.json -o plain.jfilm -q");
     assert!(folder.bad("merge plain.jfilm -o a.png --aov-output b.exr", 2).contains("no layers"));
+}
+
+#[test]
+fn lights_are_mixed_anew_without_a_ray() {
+    let folder = Folder::new();
+    let scene = |key: f64, color: &str| {
+        let lights = format!(
+            r#"[{{"point": {{"position": [4, 6, 4], "intensity": {}, "light_group": "key"}}}},
+               {{"point": {{"position": [-4, 6, 4], "intensity": 20, "color": {color}, "light_group": "fill"}}}}]"#,
+            60.0 * key
+        );
+        let text = SCENE.replace(r#"[{"point": {"position": [4, 6, 4], "intensity": 60}}]"#, &lights);
+        assert!(text != SCENE);
+        text
+    };
+    let render = |key: f64, color: &str, line: &str| {
+        fs::write(folder.path("lit.json"), scene(key, color)).unwrap();
+        folder.good(&format!("render lit.json --size 24x18 --samples 16 --integrator path -q {line}"));
+    };
+    render(1.0, "[1, 1, 1]", "--aov light_groups -o film.jfilm");
+    render(1.0, "[1, 1, 1]", "-o as_it_was.pfm");
+    render(2.0, "[0, 0.5, 0]", "-o other.pfm");
+    folder.good("relight film.jfilm --gain key=1 -o same.pfm -q");
+    assert!(fs::read(folder.path("same.pfm")).unwrap() == fs::read(folder.path("as_it_was.pfm")).unwrap());
+    folder.good("relight film.jfilm --gain key=2,fill=#00bc00 -o mixed.pfm -q");
+    // #bc is 0.503 of linear light.
+    folder.good("compare mixed.pfm other.pfm --tolerance 2e-3");
+    folder.bad("compare mixed.pfm as_it_was.pfm --tolerance 2e-3", 1);
+    for (gain, said) in [("kye=2", "did you mean `key`"), ("key", "GROUP=FACTOR"), ("key=-1", "GROUP=FACTOR")] {
+        let message = folder.bad(&format!("relight film.jfilm --gain {gain} -o a.png"), 2);
+        assert!(message.contains(said), "{gain}: {message}");
+    }
+    render(1.0, "[1, 1, 1]", "-o plain.jfilm");
+    assert!(folder.bad("relight plain.jfilm --gain key=2 -o a.png", 2).contains("light_groups"));
 }

@@ -33,6 +33,21 @@ impl LayerSet {
         rows
     }
 
+    /// The pixels of a tile with the light of each group times its gain, by number; where all are 1, the bits of the picture.
+    pub fn relit(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
+        let (extras, count) = (tile.extras(), tile.count().max(1) as f32);
+        let mut pixels = tile.means();
+        for (number, pixel) in pixels.iter_mut().enumerate() {
+            let seen = Pixel { set: self, tile, extras: &extras, number, count };
+            for (group, gain) in (0..).zip(gains).filter(|(_, gain)| **gain != Rgb::WHITE) {
+                *pixel += seen.mean(Layer::Group(LightGroup(group))) * (*gain - Rgb::WHITE);
+            }
+            // What is switched off leaves no less than nothing.
+            *pixel = pixel.map(|channel| channel.max(0.0));
+        }
+        pixels
+    }
+
     /// How many channels all layers have.
     fn channels(&self) -> usize {
         self.headers().iter().map(|layer| layer.channels.len()).sum()

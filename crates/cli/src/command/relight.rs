@@ -1,0 +1,111 @@
+//! `juggler relight`: a picture whose lights are brighter, darker or of another colour, without tracing a ray again.
+
+use crate::console;
+use crate::failure::Failure;
+use crate::format::duration;
+use crate::output::{self, STANDARD_OUTPUT};
+use crate::plan::Encoding;
+use clap::Args;
+use juggler::LayerSet;
+use juggler::film::{self, Description, Wanted};
+use juggler::imaging::{self, Header, Tone};
+use juggler::math::Rgb;
+use juggler::tracer::film::{Rect, Tile};
+use std::path::Path;
+use std::time::Instant;
+
+/// Flags of `juggler relight`.
+#[derive(Debug, Args)]
+pub struct Relight {
+    /// All parts (.jfilm) of a picture rendered with `--aov light_groups`, in any order
+    #[arg(required = true, value_name = "FILM")]
+    films: Vec<String>,
+    /// Factors on groups of lights with commas between: key=2,fill=#ffc080; `rest` are the lights of no group, 0 switches off
+    #[arg(short, long, value_name = "GROUP=FACTOR")]
+    gain: String,
+    /// Where the picture goes; the ending says the format
+    #[arg(short, long, value_name = "FILE")]
+    output: String,
+    /// The file format, instead of the one that the ending says
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<String>,
+    /// Bits of a channel: 8 or 16 in a PNG, 16 or 32 in an EXR
+    #[arg(long, value_name = "N")]
+    bits: Option<u8>,
+    /// Quality of a JPEG
+    #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
+    quality: Option<u8>,
+    /// Stops by which the picture is brightened, instead of those of the render
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    exposure: Option<f32>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Relight {
+    /// Mixes the groups anew.
+    pub fn run(self) -> Result<(), Failure> {
+        let start = Instant::now();
+        let Encoding { format, options } =
+            Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+        let merge = film::Merge::open(&self.films, Wanted::Whole)?;
+        let Description { region, tone, metadata, layers, .. } = merge.description();
+        let set = LayerSet::of_part(layers)?;
+        let gains = gains(&self.gain, &set)?;
+        let mut tone: Tone = serde_json::from_value(tone.clone())
+            .map_err(|error| Failure::System(format!("the film's tone curve cannot be read: {error}")))?;
+        tone.exposure_stops = self.exposure.unwrap_or(tone.exposure_stops);
+        let mut metadata = metadata.clone();
+        metadata.push(("Gain".to_owned(), self.gain.clone()));
+        let header = Header { tone, options, metadata, ..Header::new(region.width, region.height) };
+        let mut writer = match self.output.as_str() {
+            STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
+            file => imaging::create(Path::new(file), format, &header)?,
+        };
+        merge
+            .rows_of_tiles(|band, tiles, _| Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?))?;
+        writer.finish()?;
+        self.tell(region, start)
+    }
+
+    fn tell(&self, Rect { width, height, .. }: &Rect, start: Instant) -> Result<(), Failure> {
+        if self.quiet {
+            return Ok(());
+        }
+        let line = format!("{}: {width}x{height}, {}", self.output, duration(start.elapsed()));
+        if self.output == STANDARD_OUTPUT {
+            console::say(&line);
+            return Ok(());
+        }
+        console::print(&line)
+    }
+}
+
+/// A row of tiles, mixed anew.
+fn relit(set: &LayerSet, gains: &[Rgb], band: &Rect, tiles: &[Tile]) -> Vec<Rgb> {
+    let mut pixels = vec![Rgb::BLACK; band.area() as usize];
+    tiles.iter().for_each(|tile| tile.pixels().copy(&set.relit(tile, gains), band, &mut pixels));
+    pixels
+}
+
+/// The factor on each of the film's groups, by number.
+fn gains(text: &str, set: &LayerSet) -> Result<Vec<Rgb>, Failure> {
+    let groups = set.light_groups();
+    if groups.is_empty() {
+        return Err(Failure::Wrong("the film keeps no groups of lights: render it with --aov light_groups".into()));
+    }
+    let mut gains = vec![Rgb::WHITE; groups.len()];
+    for part in text.split(',') {
+        let wrong = || Failure::Wrong(format!("`{part}`: a gain is GROUP=FACTOR, such as key=2 or key=#ffc080"));
+        let (name, factor) = part.split_once('=').ok_or_else(wrong)?;
+        juggler::check_name("group of lights", name.trim(), groups.iter().map(String::as_str))?;
+        let number = factor.trim().parse().ok().filter(|number: &f32| (0.0..=1e6).contains(number)).map(Rgb::splat);
+        let factor = number.or_else(|| Rgb::from_hex(factor.trim())).ok_or_else(wrong)?;
+        let group = groups.iter().position(|group| group == name.trim());
+        if let Some(gain) = group.and_then(|group| gains.get_mut(group)) {
+            *gain = factor;
+        }
+    }
+    Ok(gains)
+}
