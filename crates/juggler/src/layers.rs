@@ -147,6 +147,8 @@ pub struct LayerSet {
     wanted: Vec<Aov>,
     layers: Layers,
     names: Names,
+    /// How many channels all layers have.
+    channels: usize,
 }
 
 impl LayerSet {
@@ -166,7 +168,9 @@ impl LayerSet {
         }
         let masks = wanted.iter().any(|aov| aov.needs_masks());
         let names = if wanted.is_empty() { Names::default() } else { names.clone() };
-        Self { layers: Layers { planes, masks }, wanted, names }
+        let mut set = Self { layers: Layers { planes, masks }, wanted, names, channels: 0 };
+        set.channels = set.headers().iter().map(|layer| layer.channels.len()).sum();
+        set
     }
 
     /// Whether there are none.
@@ -199,6 +203,7 @@ impl LayerSet {
             wanted: self.wanted.iter().map(|aov| aov.name().to_owned()).chain(guides).collect(),
             planes: self.layers.planes.len() as u32,
             masks: self.layers.masks,
+            entries: self.names.entries,
             objects: self.names.objects.clone(),
             materials: self.names.materials.iter().map(|(id, name)| (id.0, name.clone())).collect(),
             light_groups: self.names.light_groups.clone(),
@@ -208,6 +213,7 @@ impl LayerSet {
     /// As a film part says it; an error where that is none of this program's.
     pub fn of_part(part: &Layered) -> Result<Self, Error> {
         let names = Names {
+            entries: part.entries,
             objects: part.objects.clone(),
             materials: part.materials.iter().map(|(id, name)| (MaterialId(*id), name.clone())).collect(),
             light_groups: part.light_groups.clone(),
@@ -251,7 +257,10 @@ impl LayerSet {
                 let group = |name: &String| LayerHeader::new(&format!("light_group_{name}"), &["R", "G", "B"]);
                 return self.names.light_groups.iter().map(group).collect();
             }
-            Aov::CryptoObject => return cryptomatte::headers("CryptoObject", &self.names.objects),
+            Aov::CryptoObject => {
+                let names: Vec<String> = (0..self.names.entries).map(|number| self.names.object(number)).collect();
+                return cryptomatte::headers("CryptoObject", &names);
+            }
             Aov::CryptoMaterial => {
                 let names: Vec<String> = self.names.materials.iter().map(|(_, name)| name.clone()).collect();
                 return cryptomatte::headers("CryptoMaterial", &names);

@@ -75,9 +75,12 @@ pub struct Layered {
     pub planes: u32,
     /// Whether it is kept how much of a pixel shows which thing.
     pub masks: bool,
-    /// Names of the scene's objects, in order.
+    /// How many entries the scene's objects are.
     #[serde(default)]
-    pub objects: Vec<String>,
+    pub entries: u32,
+    /// Numbers and names of those that have one.
+    #[serde(default)]
+    pub objects: Vec<(u32, String)>,
     /// Numbers and names of materials.
     #[serde(default)]
     pub materials: Vec<(u32, String)>,

@@ -14,7 +14,7 @@ pub(super) const ENTRY: usize = 44;
 /// Bytes of the hash at the end.
 pub(super) const SEAL: usize = 32;
 /// Most bytes that a head may have.
-pub(super) const MAX_HEAD: u32 = 1 << 20;
+pub(super) const MAX_HEAD: u32 = 1 << 24;
 
 /// The first bytes of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,15 +103,21 @@ pub(super) struct Layer {
     pub channels: Vec<String>,
 }
 
-/// The layers of this version, for a picture that is clamped or not.
-pub(super) fn layers(clamped: bool) -> Vec<Layer> {
+/// What chunks of this version hold of each pixel of a picture.
+pub(super) fn layers(picture: &Description) -> Vec<Layer> {
     let layer = |name: &str, channels: &[&str]| Layer {
         name: name.into(),
         channels: channels.iter().map(ToString::to_string).collect(),
     };
     let mut layers = vec![layer("radiance", &["R", "G", "B"])];
-    if clamped {
+    if picture.clamped {
         layers.push(layer("clamped", &["mean"]));
+    }
+    if picture.layers.planes > 0 {
+        layers.push(layer("planes", &["R", "G", "B"]));
+    }
+    if picture.layers.masks {
+        layers.push(layer("masks", &["entry", "material", "shape"]));
     }
     layers
 }

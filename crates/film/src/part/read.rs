@@ -233,7 +233,7 @@ impl Source {
     fn description(&self, head: &[u8]) -> Result<Description, PartError> {
         let Head { layers: found, part } =
             serde_json::from_slice(head).map_err(|error| self.damaged(format!("its head cannot be read: {error}")))?;
-        let known = layers(part.clamped);
+        let known = layers(&part);
         if found != known {
             let (layers, known) = (in_words(&found), in_words(&known));
             return Err(PartError::Layers { file: self.name.clone(), layers, known });

@@ -103,7 +103,7 @@ fn head(name: &str, description: &Description) -> Result<Vec<u8>, PartError> {
     if let Some(fault) = description.fault() {
         return Err(unfit(fault.to_owned()));
     }
-    let head = Head { layers: layers(description.clamped), part: description.clone() };
+    let head = Head { layers: layers(description), part: description.clone() };
     let mut bytes = serde_json::to_vec_pretty(&head).map_err(|error| unfit(error.to_string()))?;
     bytes.push(b'\n');
     if bytes.len() > MAX_HEAD as usize {

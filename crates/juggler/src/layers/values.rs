@@ -23,7 +23,7 @@ impl LayerSet {
     /// The rows of a band from its tiles, channel after channel: red, green and blue of the picture itself if it is wanted, then
     /// those of [`LayerSet::headers`]. Pixels that no tile holds are 0.
     pub fn band(&self, band: &Rect, tiles: &[Tile], with_picture: bool) -> Vec<Vec<f32>> {
-        let count = self.channels() + if with_picture { 3 } else { 0 };
+        let count = self.channels + if with_picture { 3 } else { 0 };
         let mut rows = vec![vec![0.0; band.area() as usize]; count];
         for tile in tiles {
             let picture = if with_picture { channels_of(&tile.means()) } else { Vec::new() };
@@ -48,15 +48,10 @@ impl LayerSet {
         pixels
     }
 
-    /// How many channels all layers have.
-    fn channels(&self) -> usize {
-        self.headers().iter().map(|layer| layer.channels.len()).sum()
-    }
-
     /// What a tile shows: channel after channel, each pixel by pixel.
     fn values(&self, tile: &Tile) -> Vec<Vec<f32>> {
         let (extras, count) = (tile.extras(), tile.count().max(1) as f32);
-        let mut channels: Vec<Vec<f32>> = vec![Vec::new(); self.channels()];
+        let mut channels: Vec<Vec<f32>> = vec![Vec::new(); self.channels];
         let mut row = Vec::with_capacity(channels.len());
         for number in 0..tile.pixels().area() as usize {
             let pixel = Pixel { set: self, tile, extras: &extras, number, count };

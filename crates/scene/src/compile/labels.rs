@@ -12,8 +12,10 @@ pub const REST: &str = "rest";
 /// Names of what masks and layers tell apart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
-    /// Of each entry of the scene's `objects`, in order: its own name, or its place.
-    pub objects: Vec<String>,
+    /// How many entries the scene's `objects` are.
+    pub entries: u32,
+    /// Of each of them that has one, by number, rising.
+    pub objects: Vec<(u32, String)>,
     /// Of each material that has one, by number, rising.
     pub materials: Vec<(MaterialId, String)>,
     /// Of each group of lights, by number; the first is [`REST`].
@@ -23,8 +25,8 @@ pub struct Names {
 impl Names {
     /// Of a scene.
     pub fn of(scene: &Description) -> Self {
-        let name = |(i, name): (usize, &Option<String>)| name.clone().unwrap_or_else(|| format!("objects[{i}]"));
-        let objects = scene.objects.iter().map(|object| &object.name).enumerate().map(name).collect();
+        let names = (0..).zip(&scene.objects).filter_map(|(i, object)| Some((i, object.name.clone()?)));
+        let entries = u32::try_from(scene.objects.len()).unwrap_or(u32::MAX);
         let mut light_groups = vec![REST.to_owned()];
         let of_lights = scene.lights.iter().filter_map(|light| light.light_group());
         let of_objects = scene.objects.iter().filter_map(|object| object.light_group.as_deref());
@@ -33,7 +35,7 @@ impl Names {
                 light_groups.push(name.to_owned());
             }
         }
-        Self { objects, materials: Vec::new(), light_groups }
+        Self { entries, objects: names.collect(), materials: Vec::new(), light_groups }
     }
 
     /// Of a material by number: its own, or its number.
@@ -43,9 +45,11 @@ impl Names {
         name.unwrap_or_else(|| format!("material {number}"))
     }
 
-    /// Of an entry of the scene's objects by number.
+    /// Of an entry of the scene's objects by number: its own, or its place.
     pub fn object(&self, number: u32) -> String {
-        self.objects.get(number as usize).cloned().unwrap_or_else(|| format!("objects[{number}]"))
+        let found = self.objects.binary_search_by_key(&number, |(entry, _)| *entry).ok();
+        let name = found.and_then(|at| self.objects.get(at)).map(|(_, name)| name.clone());
+        name.unwrap_or_else(|| format!("objects[{number}]"))
     }
 
     fn group(&self, name: Option<&str>) -> LightGroup {

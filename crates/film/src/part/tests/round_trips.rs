@@ -83,7 +83,7 @@ fn descriptions_that_cannot_be_are_refused() {
         Description { stop: Stop::Noise { level: f64::INFINITY }, ..good.clone() },
         Description { share: Share { index: 1, ..Share::whole(100) }, ..good.clone() },
         Description { share: Share::whole(101), ..good.clone() },
-        Description { command: "x".repeat(1 << 20), ..good.clone() },
+        Description { command: "x".repeat(1 << 24), ..good.clone() },
     ];
     for description in wrong {
         assert!(matches!(write(&path, &description, []), Err(PartError::Unfit { .. })), "{description:?}");
