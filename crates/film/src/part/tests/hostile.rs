@@ -135,7 +135,7 @@ struct Forged {
 
 impl Forged {
     fn new() -> Self {
-        let head = Head { layers: layers(false), part: description(TINY, 21) };
+        let head = Head { layers: layers(&description(TINY, 21)), part: description(TINY, 21) };
         let chunk = Chunk::encode(&tile(TINY, 0..21), false).bytes;
         let head = serde_json::to_vec(&head).unwrap();
         let chunks = vec![(0, chunk)];
@@ -225,7 +225,7 @@ fn heads_are_checked() {
     assert!(head(b"").contains("head cannot be read") && head(b"\xff").contains("head cannot be read"));
     assert!(head("[".repeat(100_000).as_bytes()).contains("head cannot be read"));
     let with = |change: &dyn Fn(&mut Head)| {
-        let mut head = Head { layers: layers(false), part: description(TINY, 21) };
+        let mut head = Head { layers: layers(&description(TINY, 21)), part: description(TINY, 21) };
         change(&mut head);
         forged_head(&head)
     };
