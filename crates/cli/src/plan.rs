@@ -222,6 +222,9 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         crop: if product == Product::Part { None } else { args.crop },
         curve: args.tone.clone(),
         exposure_stops: args.exposure,
+        white_balance: args.white_balance,
+        primaries: args.primaries,
+        dither: args.dither,
     }
 }
 

@@ -34,4 +34,4 @@ pub use input::{Limits, decode, inspect, read, read_within};
 pub use look::Look;
 pub use output::{Destination, create, to_standard_output, write_image};
 pub use raster::{Encoding, Layout, Raster, Samples, decode_raster, inspect_raster};
-pub use tone::{AnyCurve, Tone};
+pub use tone::{AnyCurve, Primaries, Tone, WhiteBalance};
