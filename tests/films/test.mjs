@@ -27,7 +27,8 @@ function run(command, ...words) {
 
 /** All films, and their frames. */
 function render() {
-  run(program, "render", "juggler", ...FLAGS, "-o", file("frame_####.png"));
+  // Frames of films are not dithered.
+  run(program, "render", "juggler", ...FLAGS, "--dither", "off", "-o", file("frame_####.png"));
   for (const ending of Object.keys(TYPES)) run(program, "render", "juggler", ...FLAGS, "-o", file(`film.${ending}`));
   const sizes = Object.keys(TYPES).map((ending) => `${ending} ${statSync(file(`film.${ending}`)).size}`);
   say(`${FRAMES} frames of ${SIZE.join("x")}: bytes of ${sizes.join(", ")}`);

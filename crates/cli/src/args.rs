@@ -4,7 +4,7 @@ use crate::command::Command;
 use crate::progress::Progress;
 use crate::value::{self, FrameRange, Shard};
 use clap::{Args as Arguments, Parser};
-use juggler::imaging::Look;
+use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::tracer::film::Rect;
 
 /// A ray tracer whose pictures are the same to the bit everywhere.
@@ -46,13 +46,25 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", help_heading = "Output")]
     pub plays: Option<u16>,
 
-    /// How light becomes the picture's colours
+    /// How light becomes the picture's colours: srgb, gamma, linear, reinhard, aces, agx or pbr_neutral
     #[arg(long, value_name = "CURVE", help_heading = "Output")]
     pub tone: Option<String>,
 
     /// Stops by which the picture is brightened
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, help_heading = "Output")]
     pub exposure: Option<f32>,
+
+    /// The light that is to look white, by its colour temperature, such as 3200, and how far it is greener, such as 3200,5
+    #[arg(long, value_name = "KELVIN[,TINT]", value_parser = value::white_balance, help_heading = "Output")]
+    pub white_balance: Option<WhiteBalance>,
+
+    /// The primaries of the file: srgb, display_p3 or rec2020 (PNG and EXR), acescg (EXR) [default: srgb]
+    #[arg(long, value_name = "NAME", value_parser = value::primaries, help_heading = "Output")]
+    pub primaries: Option<Primaries>,
+
+    /// Whether pictures of 8 bits are dithered, so that gradients show no steps [default: on]; films and looks never are
+    #[arg(long, value_name = "ON|OFF", value_parser = value::switch, help_heading = "Output")]
+    pub dither: Option<bool>,
 
     /// A look of old screens: `ham` is the Amiga's 4,096 colours, held and modified (at home in 320x200), `ham-dithered` the same
     /// with what lies between them dithered

@@ -109,7 +109,9 @@ impl From<ImageError> for Failure {
         match error {
             ImageError::Read { place, source } => Self::file("read", place, &source),
             ImageError::Write { place, source } => Self::file("write", place, &source),
-            ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } => Self::Wrong(message),
+            ImageError::UnknownFormat { .. } | ImageError::Dimensions { .. } | ImageError::Primaries { .. } => {
+                Self::Wrong(message)
+            }
             ImageError::SizesDiffer { .. } => Self::Different(message),
             _ => Self::System(message),
         }

@@ -235,6 +235,9 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         exposure_stops: args.exposure,
         aovs: Vec::new(),
         guides: false,
+        white_balance: args.white_balance,
+        primaries: args.primaries,
+        dither: args.dither,
     }
 }
 

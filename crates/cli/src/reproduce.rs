@@ -2,7 +2,7 @@
 //! that equal pictures are equal files.
 
 use crate::plan::{Moments, Plan, Shot};
-use juggler::imaging::{Look, Options, SampleDepth};
+use juggler::imaging::{Look, Options, Primaries, SampleDepth, WhiteBalance};
 use juggler::tracer::film::Rect;
 use juggler::{Aov, Limit, Settings};
 use std::fmt::Display;
@@ -26,10 +26,13 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         shutter,
         seed,
         crop,
-        curve,
-        exposure_stops,
         aovs,
         guides: _,
+        curve: _,
+        exposure_stops: _,
+        white_balance: _,
+        primaries: _,
+        dither: _,
     } = &plan.settings;
     let Options { png_16_bit, jpeg_quality, exr_depth, look, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
@@ -49,8 +52,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--shutter", shutter.map(|[open, close]| format!("{open}..{close}")));
     words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
     words.flag("--seed", *seed);
-    words.flag("--tone", curve.as_deref().map(quoted));
-    words.flag("--exposure", *exposure_stops);
+    words.tone(&plan.settings);
     words.flag("--look", Some(look.name()).filter(|_| look != Look::Plain));
     words.flag("--aov", Some(list(aovs)).filter(|_| !aovs.is_empty()));
     words.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
@@ -71,6 +73,20 @@ pub fn told_by(file: &str, command: &str) -> String {
 struct Words(String);
 
 impl Words {
+    /// From light to levels.
+    fn tone(&mut self, settings: &Settings) {
+        let Settings { curve, exposure_stops, white_balance, primaries, dither, .. } = settings;
+        self.flag("--tone", curve.as_deref().map(quoted));
+        self.flag("--exposure", *exposure_stops);
+        let light = white_balance.map(|WhiteBalance { kelvin, tint }| match tint {
+            0.0 => kelvin.to_string(),
+            tint => format!("{kelvin},{tint}"),
+        });
+        self.flag("--white-balance", light);
+        self.flag("--primaries", primaries.map(Primaries::name));
+        self.flag("--dither", dither.map(|dither| if dither { "on" } else { "off" }));
+    }
+
     fn flag(&mut self, name: &str, value: Option<impl Display>) {
         if let Some(value) = value {
             self.0.push_str(&format!(" {name} {value}"));
@@ -102,7 +118,7 @@ mod tests {
     fn what_decides_the_picture_is_said_and_nothing_else() {
         assert_eq!(commands(&["a", "-o", "b.png", "--threads", "3", "--quiet", "--frame", "0"]), ["juggler render a"]);
         let all = "a.json --size 4x3 --samples 2 --integrator path --max-depth 5 --camera top --crop 1,2,3,4 --seed 7 \
-                   --tone gamma --exposure -0.5 --look ham --bits 16";
+                   --tone gamma --exposure -0.5 --white-balance 3200,-5 --primaries srgb --dither off --look ham --bits 16";
         let words: Vec<&str> = all.split_whitespace().collect();
         assert_eq!(commands(&words), [format!("juggler render {}", words.join(" "))]);
         assert_eq!(commands(&["a", "-o", "b.jpg", "--quality", "7"]), ["juggler render a --quality 7"]);

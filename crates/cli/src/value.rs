@@ -1,7 +1,7 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
-use juggler::imaging::Look;
 use juggler::imaging::animation::PACES;
+use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::scene::compile::MAX_SHUTTER;
 use juggler::tracer::film::{BLOCK, Rect};
 use std::ops::Range;
@@ -49,6 +49,31 @@ pub struct FrameRange {
 pub fn look(text: &str) -> Result<Look, String> {
     let look = Look::ALL.into_iter().find(|look| look.name() == text);
     look.ok_or_else(|| Look::ALL.map(Look::name).join(" or "))
+}
+
+/// `3200` or `3200,5`: the light that is to look white.
+pub fn white_balance(text: &str) -> Result<WhiteBalance, String> {
+    let wrong = || "a light is KELVIN or KELVIN,TINT, 1667 to 25000 and -50 to 50, such as 3200 or 3200,5".to_owned();
+    let (kelvin, tint) = text.split_once(',').unwrap_or((text, "0"));
+    let number = |text: &str, least: f64, most: f64| {
+        text.trim().parse().ok().filter(|number| (least..=most).contains(number)).ok_or_else(wrong)
+    };
+    Ok(WhiteBalance { kelvin: number(kelvin, 1667.0, 25_000.0)?, tint: number(tint, -50.0, 50.0)? })
+}
+
+/// Primaries by their name.
+pub fn primaries(text: &str) -> Result<Primaries, String> {
+    let found = Primaries::ALL.into_iter().find(|primaries| primaries.name() == text);
+    found.ok_or_else(|| Primaries::ALL.map(Primaries::name).join(", "))
+}
+
+/// `on` or `off`.
+pub fn switch(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err("on or off".into()),
+    }
 }
 
 /// Frames a second.
@@ -182,6 +207,17 @@ mod tests {
         for wrong in ["0x5", "5x0", "65537x1", "99999999999x1"] {
             assert!(size(wrong).is_err_and(|e| e.contains("1 to 65536")), "{wrong}");
         }
+    }
+
+    #[test]
+    fn lights_primaries_and_switches() {
+        assert_eq!(white_balance("3200"), Ok(WhiteBalance { kelvin: 3200.0, tint: 0.0 }));
+        assert_eq!(white_balance("5500,-7.5"), Ok(WhiteBalance { kelvin: 5500.0, tint: -7.5 }));
+        for wrong in ["", "warm", "1000", "3200,99", "3200,", "NaN", "3200,5,5"] {
+            assert!(white_balance(wrong).is_err_and(|e| e.contains("such as 3200")), "{wrong}");
+        }
+        assert_eq!((primaries("rec2020"), switch("on"), switch("off")), (Ok(Primaries::Rec2020), Ok(true), Ok(false)));
+        assert!(primaries("adobe").is_err_and(|e| e.contains("display_p3")) && switch("yes").is_err());
     }
 
     #[test]

@@ -20,10 +20,7 @@ pub struct Difference {
 /// Compares a picture with a reference. Channels that are not finite in either count as different by
 /// infinity, unless their bits are equal.
 pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageError> {
-    let sizes = [picture, reference].map(|i| (i.width(), i.height()));
-    if sizes[0] != sizes[1] {
-        return Err(ImageError::SizesDiffer { a: sizes[0], b: sizes[1] });
-    }
+    same_size(picture, reference)?;
     let (mut squares, mut relative, mut largest, mut same_bits) = (0.0, 0.0, 0.0f64, true);
     for (a, b) in picture.pixels().iter().zip(reference.pixels()) {
         for (x, r) in a.to_array().into_iter().zip(b.to_array()) {
@@ -41,6 +38,12 @@ pub fn compare(picture: &Image, reference: &Image) -> Result<Difference, ImageEr
     }
     let count = (picture.pixels().len() * 3).max(1) as f64;
     Ok(Difference { rmse: (squares / count).sqrt(), relative_mse: relative / count, largest, same_bits })
+}
+
+/// Pictures of different size cannot be compared.
+pub(crate) fn same_size(a: &Image, b: &Image) -> Result<(), ImageError> {
+    let [a, b] = [a, b].map(|image| (image.width(), image.height()));
+    if a == b { Ok(()) } else { Err(ImageError::SizesDiffer { a, b }) }
 }
 
 #[cfg(test)]

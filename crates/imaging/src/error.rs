@@ -1,6 +1,6 @@
 //! What can go wrong with files of pixels, told apart by who can act.
 
-use crate::Format;
+use crate::{Format, Primaries};
 use std::io;
 
 /// Why a picture was not written, read or compared. `place` is the file, as the user named it.
@@ -91,6 +91,17 @@ pub enum ImageError {
         format: Format,
         /// What the encoder says.
         message: String,
+    },
+    /// The user picks another format, or the usual primaries.
+    #[error(
+        "a {format} file cannot say that its primaries are `{}`: PNG without a look takes display_p3 and rec2020, OpenEXR all",
+        primaries.name()
+    )]
+    Primaries {
+        /// The format.
+        format: Format,
+        /// The primaries.
+        primaries: Primaries,
     },
     /// The caller gave half a row, a row too much, or too few rows.
     #[error("{given} pixels given where {expected} were expected")]

@@ -12,13 +12,15 @@
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
 //! - [`input`]: from a file to an image;
 //! - [`raster`]: from a file to its samples as they are;
-//! - [`mod@compare`]: how much two images differ.
+//! - [`mod@compare`]: how much two images differ;
+//! - [`mod@flip`]: how different they look.
 
 pub mod animation;
 pub mod atomic;
 pub mod codec;
 pub mod compare;
 mod error;
+pub mod flip;
 pub mod format;
 pub mod input;
 pub mod layered;
@@ -31,9 +33,10 @@ pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_wri
 pub use codec::{ExrCompression, Facts, Header, Options, RowWriter, SampleDepth, writer};
 pub use compare::{Difference, compare};
 pub use error::ImageError;
+pub use flip::Flip;
 pub use format::Format;
 pub use input::{Limits, decode, inspect, read, read_within};
 pub use look::Look;
 pub use output::{Destination, create, to_standard_output, write_image};
 pub use raster::{Encoding, Layout, Raster, Samples, decode_raster, inspect_raster};
-pub use tone::{AnyCurve, Tone};
+pub use tone::{AnyCurve, Primaries, Tone, WhiteBalance};

@@ -81,6 +81,7 @@ impl Seek for Held {
 /// are written as they are.
 pub fn create(path: &Path, format: Format, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
+    header.check_primaries(format)?;
     let (destination, file) = whole_file(path)?;
     let name = destination.name().to_owned();
     let rows = writer(format, destination, header)?;

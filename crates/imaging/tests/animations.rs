@@ -15,7 +15,7 @@ use std::path::Path;
 const SIZE: [u32; 2] = [48, 32];
 
 fn header(frames: u32, frames_per_second: f64, plays: u16) -> AnimationHeader {
-    let tone = Tone { curve: AnyCurve::Srgb(Srgb {}), exposure_stops: 0.0 };
+    let tone = Tone::new(AnyCurve::Srgb(Srgb {}));
     AnimationHeader { width: SIZE[0], height: SIZE[1], tone, frames, frames_per_second, plays, quality: 90 }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::kinds::{by_name, check_name};
 use crate::{Aov, Error};
-use juggler_imaging::Tone;
+use juggler_imaging::{Primaries, Tone, WhiteBalance};
 use juggler_scene::Scene;
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::kind::name_of;
@@ -88,6 +88,12 @@ pub struct Settings {
     pub aovs: Vec<Aov>,
     /// Whether the film keeps what denoising is guided by.
     pub guides: bool,
+    /// Which light is to look white, likewise.
+    pub white_balance: Option<WhiteBalance>,
+    /// The primaries of the file.
+    pub primaries: Option<Primaries>,
+    /// Whether levels of 8 bits are dithered.
+    pub dither: Option<bool>,
 }
 
 impl Settings {
@@ -123,6 +129,9 @@ impl Settings {
             tone.curve = by_name("tone curve", name)?;
         }
         tone.exposure_stops = self.exposure_stops.unwrap_or(tone.exposure_stops);
+        tone.white_balance = self.white_balance.or(tone.white_balance);
+        tone.primaries = self.primaries.unwrap_or(tone.primaries);
+        tone.dither = self.dither.unwrap_or(tone.dither);
         Ok(())
     }
 
@@ -186,6 +195,17 @@ mod tests {
         assert_eq!(scene.description.render.integrator, Normals::default().into());
         let deep = Settings { max_depth: Some(3), ..other };
         assert!(deep.apply(&scene).unwrap_err().to_string().contains("normals"));
+    }
+
+    #[test]
+    fn of_the_tone_only_what_is_wished_for_changes() {
+        let mut scene = scene();
+        scene.description.tone.exposure_stops = 1.5;
+        scene.description.tone.white_balance = Some(WhiteBalance::default());
+        let wish = Settings { primaries: Some(Primaries::Rec2020), dither: Some(false), ..Settings::default() };
+        let tone = wish.apply(&scene).unwrap().description.tone;
+        let expected = Tone { primaries: Primaries::Rec2020, dither: false, ..scene.description.tone };
+        assert_eq!(tone, expected);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use juggler_imaging::{Format, Header, Options, create};
+use juggler_imaging::{Format, Header, Options, Tone, create};
 use juggler_math::{Image, Rgb, color::srgb_decode};
 use juggler_scene::compile::{Library, estimate_picture};
 use juggler_scene::{Bundle, Scene};
@@ -24,7 +24,8 @@ fn folder() -> TempDir {
 }
 
 fn save(path: &Path, image: &Image, options: Options) {
-    let header = Header { options, ..Header::new(image.width(), image.height()) };
+    let tone = Tone { dither: false, ..Tone::default() };
+    let header = Header { options, tone, ..Header::new(image.width(), image.height()) };
     let mut writer = create(path, Format::from_path(path).unwrap(), &header).unwrap();
     writer.write_rows(image.pixels()).unwrap();
     writer.finish().unwrap();

@@ -10,6 +10,7 @@ use juggler::tracer::render::Control;
 use juggler::tracer::sampler::AnySampler;
 use juggler::{Picture, Settings};
 use juggler_session::Channel;
+use juggler_session::screen::Toner;
 use serde_json::{Value, json};
 use std::path::Path;
 use tokio::sync::{OnceCell, Semaphore};
@@ -84,8 +85,8 @@ fn render(name: &str) -> Option<Vec<u8>> {
     pool.install(|| {
         let picture = Picture::new(&scene, &settings).ok()?;
         let image = picture.image(&Control::default()).ok()?;
-        let level = |light: f32| picture.tone().level(light, 255) as u8;
-        let rgba: Vec<u8> = image.pixels().iter().flat_map(|p| [level(p.r), level(p.g), level(p.b), 255]).collect();
+        let toner = Toner::new(picture.tone());
+        let rgba: Vec<u8> = image.pixels().iter().flat_map(|pixel| toner.rgba(*pixel)).collect();
         jpeg(&rgba, u16::try_from(size[0]).ok()?, u16::try_from(size[1]).ok()?, QUALITY)
     })
 }

@@ -1,7 +1,7 @@
 //! Linear light → what a screen shows. Pure work on pixels, on the current rayon pool where it is much.
 
-use juggler::imaging::Tone;
 use juggler::imaging::tone::{AnyCurve, Linear, Quantizer};
+use juggler::imaging::{Primaries, Tone};
 use juggler::math::Rgb;
 use juggler::tracer::film::{Film, Tile};
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ const PIECE: usize = 1 << 14;
 const MOST_NOISE: f64 = 0.1;
 
 /// Shows values as they are, 0 to 1: for what is not light.
-pub const PLAIN: Tone = Tone { curve: AnyCurve::Linear(Linear {}), exposure_stops: 0.0 };
+pub const PLAIN: Tone = Tone::new(AnyCurve::Linear(Linear {}));
 
 /// From linear light to bytes of the screen. Costs a millisecond to make, and nothing to copy.
 #[derive(Clone)]
@@ -23,9 +23,10 @@ pub struct Toner {
 }
 
 impl Toner {
-    /// By a tone curve and exposure.
+    /// By a tone. Screens are taken for sRGB, whatever the primaries of a file.
     pub fn new(tone: &Tone) -> Self {
-        Self { tone: tone.clone(), quantizer: Arc::new(Quantizer::new(tone, 255)) }
+        let shown = Tone { primaries: Primaries::Srgb, ..tone.clone() };
+        Self { tone: tone.clone(), quantizer: Arc::new(Quantizer::new(&shown, 255)) }
     }
 
     /// One for this tone: itself, if it is.
@@ -36,7 +37,7 @@ impl Toner {
 
     /// One pixel: red, green, blue, opaque.
     pub fn rgba(&self, pixel: Rgb) -> [u8; 4] {
-        let [r, g, b] = pixel.to_array().map(|value| self.quantizer.level(value) as u8);
+        let [r, g, b] = self.quantizer.levels(pixel).map(|level| level as u8);
         [r, g, b, 255]
     }
 

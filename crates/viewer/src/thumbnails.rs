@@ -4,6 +4,7 @@
 use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use juggler::Settings;
 use juggler::scene::{BuiltIn, Scene, built_in_scenes};
+use juggler_session::screen::Toner;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -87,9 +88,11 @@ fn render(scene: &BuiltIn) -> Option<ColorImage> {
     let size = [width, height].map(|edge| ((edge as f32 * scale) as u32).max(1));
     let settings = Settings { size: Some(size), samples: Some(SAMPLES), ..Settings::default() };
     let image = juggler::render(&scene, &settings).ok()?;
-    let tone = &scene.description.tone;
-    let level = |linear: f32| tone.level(linear, 255) as u8;
-    let color = |pixel: &juggler::math::Rgb| Color32::from_rgb(level(pixel.r), level(pixel.g), level(pixel.b));
+    let toner = Toner::new(&scene.description.tone);
+    let color = |pixel: &juggler::math::Rgb| {
+        let [r, g, b, _] = toner.rgba(*pixel);
+        Color32::from_rgb(r, g, b)
+    };
     Some(ColorImage::new(size.map(|edge| edge as usize), image.pixels().iter().map(color).collect()))
 }
 

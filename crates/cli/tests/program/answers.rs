@@ -152,7 +152,37 @@ fn comparisons_answer_with_their_status() {
     let stats: serde_json::Value = serde_json::from_str(&folder.run("compare a.pfm b.pfm --stats -").stdout).unwrap();
     assert!(stats["equal"] == false && stats["rmse"].as_f64().unwrap() > 0.0, "{stats}");
     let keys: Vec<&String> = stats.as_object().unwrap().keys().collect();
-    assert_eq!(keys, ["version", "equal", "same_bits", "rmse", "relative_mse", "max"]);
+    assert_eq!(keys, ["version", "equal", "same_bits", "rmse", "relative_mse", "max", "flip"]);
+}
+
+#[test]
+fn comparisons_tell_how_different_pictures_look_and_where() {
+    let folder = Folder::new();
+    for (name, flags) in [("a.pfm", ""), ("b.exr", "--seed 1"), ("a.png", ""), ("b.png", "--exposure 1")] {
+        folder.good(&format!("render ball.json -q -o {name} {flags}"));
+    }
+    let stats = |line: &str| -> serde_json::Value { serde_json::from_str(&folder.run(line).stdout).unwrap() };
+    // Levels are what a screen shows; where one file holds light, both are.
+    for (pair, range) in [("a.png b.png", "ldr"), ("a.pfm b.exr", "hdr"), ("a.png a.pfm", "hdr")] {
+        let flip = &stats(&format!("compare {pair} --stats -"))["flip"];
+        assert!(flip["range"] == range && (1e-4..1.0).contains(&flip["mean"].as_f64().unwrap()), "{pair}: {flip}");
+    }
+    assert_eq!(stats("compare a.pfm a.pfm --stats -")["flip"], serde_json::json!({"mean": 0.0, "range": "hdr"}));
+    let words = folder.run("compare a.png b.png --difference map.png").stdout;
+    assert!(words.lines().any(|line| line.starts_with("FLIP") && line.ends_with("(LDR)")), "{words}");
+    let map = juggler::imaging::read(&folder.path("map.png")).unwrap();
+    assert_eq!((map.width(), map.height()), (16, 9));
+    assert!(map.pixels().iter().any(|pixel| pixel.luminance() > 0.1));
+    // The same pictures have a black one, whatever the format; the status stays that of the comparison.
+    for name in ["none.exr", "none.jpg"] {
+        folder.good(&format!("compare a.png a.png --difference {name}"));
+        let map = juggler::imaging::read(&folder.path(name)).unwrap();
+        assert!(map.pixels().iter().all(|pixel| pixel.luminance() < 0.01), "{name}");
+    }
+    assert_eq!(folder.run("compare a.pfm b.exr --tolerance 10 --difference map.webp").status, 0);
+    folder.bad("compare a.pfm b.exr --difference map.tga", 2);
+    folder.bad("compare a.pfm none.pfm --difference other.png", 3);
+    assert!(!folder.files().contains(&"other.png".to_owned()));
 }
 
 #[test]

@@ -131,9 +131,24 @@ fn exposure_and_tone_change_levels_only() {
     let plain = level("");
     let [brighter, darker, linear] = ["--exposure 1", "--exposure -1", "--tone linear"].map(level);
     assert!(brighter > plain + 5.0 && darker < plain - 5.0 && linear < plain - 5.0, "{brighter} {darker} {linear}");
-    for flags in ["--exposure 1", "--tone linear", "--tone gamma"] {
+    let [agx, cooler] = ["--tone agx", "--white-balance 3200"].map(level);
+    assert!((agx - plain).abs() > 0.5 && (cooler - plain).abs() > 0.5, "{plain} {agx} {cooler}");
+    for flags in ["--exposure 1", "--tone linear", "--tone aces", "--white-balance 3000,5", "--dither off"] {
         assert_eq!(folder.hash(&format!("ball.json {flags}")), folder.hash("ball.json"), "{flags}");
     }
+}
+
+#[test]
+fn wide_primaries_are_the_same_colours_in_other_numbers() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o a.exr");
+    folder.good("render ball.json -q -o wide.exr --primaries acescg");
+    folder.good("compare wide.exr a.exr --tolerance 1e-6");
+    assert_ne!(fs::read(folder.path("wide.exr")).unwrap(), fs::read(folder.path("a.exr")).unwrap());
+    folder.good("render ball.json -q -o a.png --bits 16");
+    folder.good("render ball.json -q -o wide.png --bits 16 --primaries display_p3");
+    folder.good("compare wide.png a.png --tolerance 1e-4");
+    assert_eq!(folder.run("compare wide.png a.png").status, 1);
 }
 
 #[test]

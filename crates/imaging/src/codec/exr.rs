@@ -1,10 +1,11 @@
 //! OpenEXR: one part of scanlines, channels B, G, R as floats or halves, plain or packed; values
-//! are scene-referred and no tone curve applies. The header is written here, in a fixed order, since the bytes of
+//! are scene-referred and no tone curve applies; primaries other than those of sRGB are named. The header is written here, in a fixed order, since the bytes of
 //! equal pictures must be equal; blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
 
 use super::{ExrCompression, Header, Inspected, ReadSeek, RowWriter, SampleDepth, Source, Texts};
 use crate::output::{Destination, WriteSeek};
 use crate::raster::{Encoding, Layout, Raster, Samples};
+use crate::tone::{Chromaticities, Matrix};
 use crate::{Format, ImageError};
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::error::Error as ExrError;
@@ -29,6 +30,8 @@ pub(super) struct Writer {
     width: usize,
     height: usize,
     block_rows: usize,
+    /// To the file's primaries.
+    primaries: Option<Matrix>,
     /// Rows of a block that is not full yet.
     pending: Vec<Rgb>,
     /// Where the table of offsets stands, and the file's end so far.
@@ -53,7 +56,8 @@ impl Writer {
             return Err(ImageError::Write { place, source });
         }
         let (depth, headers) = (header.options.exr_depth, [description(header)]);
-        Ok(Self { bytes, place, headers, depth, width, height, block_rows, pending: Vec::new(), table, end, offsets })
+        let (primaries, pending) = (header.tone.primaries.conversion(), Vec::new());
+        Ok(Self { bytes, place, headers, depth, width, height, block_rows, primaries, pending, table, end, offsets })
     }
 
     fn write_block(&mut self) -> Result<(), ImageError> {
@@ -84,7 +88,10 @@ impl Writer {
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
         for row in rows.chunks_exact(self.width) {
-            self.pending.extend(row);
+            match &self.primaries {
+                Some(matrix) => self.pending.extend(row.iter().map(|pixel| matrix.color(*pixel))),
+                None => self.pending.extend(row),
+            }
             let done = self.offsets.len() * self.block_rows + self.pending.len() / self.width;
             if self.pending.len() == self.width * self.block_rows || done == self.height {
                 self.write_block()?;
@@ -155,6 +162,9 @@ fn header_bytes(header: &Header) -> Vec<u8> {
     channels.push(0);
     let window: Vec<u8> = [0, 0, header.width - 1, header.height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
     attribute("channels", "chlist", &channels);
+    if !header.tone.primaries.is_srgb() {
+        attribute("chromaticities", "chromaticities", &eight(header.tone.primaries.chromaticities()));
+    }
     let code = match header.options.exr_compression {
         ExrCompression::None => 0,
         ExrCompression::Rle => 1,
@@ -172,6 +182,11 @@ fn header_bytes(header: &Header) -> Vec<u8> {
     }
     bytes.push(0);
     bytes
+}
+
+/// Eight floats: x and y of each.
+fn eight(Chromaticities { red, green, blue, white }: Chromaticities) -> Vec<u8> {
+    [red, green, blue, white].into_iter().flatten().flat_map(|v| (v as f32).to_le_bytes()).collect()
 }
 
 fn unreadable(source: Source, error: ExrError) -> ImageError {
@@ -229,7 +244,7 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
     Ok(Raster { layout, samples, encoding: Encoding::Linear })
 }
 
-/// The first layer with R, G and B of an EXR, in its data window.
+/// The first layer with R, G and B of an EXR, in its data window, in the primaries of sRGB whatever those of the file.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let unreadable = |error| unreadable(source, error);
     let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(unreadable)?;
@@ -245,9 +260,18 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let reader = reader.first_valid_layer().all_attributes().non_parallel();
     let image = reader.from_buffered(&mut *bytes).map_err(unreadable)?;
     let size = image.layer_data.size;
-    let pixels = image.layer_data.channel_data.pixels.1.into_iter().map(Rgb::from).collect();
+    let matrix = image.attributes.chromaticities.and_then(to_srgb);
+    let light = |pixel: [f32; 3]| matrix.map_or(Rgb::from(pixel), |matrix| matrix.color(Rgb::from(pixel)));
+    let pixels = image.layer_data.channel_data.pixels.1.into_iter().map(light).collect();
     let (width, height) = source.size(size.0 as u64, size.1 as u64)?;
     source.image(width, height, pixels)
+}
+
+/// What turns the file's primaries into those of sRGB, where it names others.
+fn to_srgb(named: exr::meta::attribute::Chromaticities) -> Option<Matrix> {
+    let [red, green, blue, white] =
+        [named.red, named.green, named.blue, named.white].map(|Vec2(x, y)| [f64::from(x), f64::from(y)]);
+    Chromaticities { red, green, blue, white }.to_srgb()
 }
 
 /// Size, and attributes that are texts, in the file's order.

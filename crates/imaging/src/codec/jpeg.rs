@@ -4,7 +4,7 @@
 use super::{Header, ReadSeek, RowWriter, Source};
 use crate::output::Destination;
 use crate::raster::{Encoding, Raster, Samples};
-use crate::tone::Quantizer;
+use crate::tone::Levels;
 use crate::{Format, ImageError};
 use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
 use juggler_math::{Image, Rgb};
@@ -20,7 +20,7 @@ const HEAD_BYTES: u64 = 16 << 20;
 /// Gathers rows and encodes them at the end.
 pub(super) struct Writer {
     destination: Destination,
-    quantizer: Quantizer,
+    levels: Levels,
     size: (u32, u32),
     quality: u8,
     bytes: Vec<u8>,
@@ -30,7 +30,7 @@ impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Self {
         Self {
             destination,
-            quantizer: Quantizer::new(&header.tone, 255),
+            levels: Levels::bytes(&header.tone, header.width),
             size: (header.width, header.height),
             quality: header.options.jpeg_quality.clamp(1, 100),
             bytes: Vec::with_capacity(header.pixels() as usize * 3),
@@ -40,7 +40,7 @@ impl Writer {
 
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        self.quantizer.append_bytes(rows, &mut self.bytes);
+        self.levels.append(rows, &mut self.bytes);
         Ok(())
     }
 

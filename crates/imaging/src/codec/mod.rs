@@ -45,6 +45,19 @@ impl Header {
         Self { width, height, tone: Tone::default(), options: Options::default(), metadata: Vec::new() }
     }
 
+    /// Whether the format can say which primaries these are: asked before anything is rendered.
+    pub fn check_primaries(&self, format: Format) -> Result<(), ImageError> {
+        let primaries = self.tone.primaries;
+        let takes = match format {
+            Format::Exr => true,
+            Format::Png => primaries.code_point().is_some(),
+            Format::Jpeg | Format::Webp | Format::Hdr | Format::Pfm => primaries.is_srgb(),
+        };
+        // A look's levels are those of screens of its time.
+        let takes = takes && (primaries.is_srgb() || self.options.look == Look::Plain);
+        if takes { Ok(()) } else { Err(ImageError::Primaries { format, primaries }) }
+    }
+
     fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
@@ -100,6 +113,7 @@ pub enum ExrCompression {
 /// A writer for a format. Wrong sizes are refused here, before anything is written.
 pub fn writer(format: Format, destination: Destination, header: &Header) -> Result<Box<dyn RowWriter>, ImageError> {
     format.check_dimensions(header.width, header.height)?;
+    header.check_primaries(format)?;
     let inner = if format.has_looks() {
         look::Writer::before(header, |header| encoder(format, destination, header))?
     } else {

@@ -1,22 +1,24 @@
 //! PNG: 8 or 16 bits a channel, streamed; tagged as sRGB, because that is the display that every tone curve aims
-//! at; texts in tEXt or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
+//! at, or, of other primaries, by cICP with the curve of sRGB, and by cHRM and gAMA for programs that do not know it; texts in tEXt or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
 
 use super::{Header, Inspected, ReadSeek, RowWriter, Source};
 use crate::ImageError;
 use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
-use crate::tone::{Curve, Gamma, Quantizer, Srgb};
+use crate::tone::{Chromaticities, Curve, Gamma, Levels, Matrix, Primaries, Srgb};
 use juggler_math::{Image, Rgb};
 use png::{BitDepth, ColorType, DecodingError, EncodingError, StreamWriter};
 use std::io::{self, BufRead, Seek, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// The curve of sRGB in a cICP chunk (ITU-T H.273, table 3).
+const SRGB_CURVE: u8 = 13;
+
 /// Streams rows into a PNG.
 pub(super) struct Writer {
     stream: StreamWriter<'static, Sink>,
     sink: Sink,
-    quantizer: Quantizer,
-    words: bool,
+    levels: Levels,
     bytes: Vec<u8>,
     place: String,
 }
@@ -27,8 +29,8 @@ impl Writer {
         let words = header.options.png_16_bit;
         let sink = Sink::new(destination);
         let stream = stream(sink.clone(), header).map_err(|e| failed(&place, e))?;
-        let quantizer = Quantizer::new(&header.tone, if words { u16::MAX } else { 255 });
-        Ok(Self { stream, sink, quantizer, words, bytes: Vec::new(), place })
+        let levels = if words { Levels::words(&header.tone) } else { Levels::bytes(&header.tone, header.width) };
+        Ok(Self { stream, sink, levels, bytes: Vec::new(), place })
     }
 }
 
@@ -37,11 +39,7 @@ impl RowWriter for Writer {
         // Rows come in any number: a fixed piece at a time keeps the buffer small.
         for piece in rows.chunks(1 << 12) {
             self.bytes.clear();
-            if self.words {
-                self.quantizer.append_words(piece, &mut self.bytes);
-            } else {
-                self.quantizer.append_bytes(piece, &mut self.bytes);
-            }
+            self.levels.append(piece, &mut self.bytes);
             self.stream.write_all(&self.bytes).map_err(|e| failed(&self.place, EncodingError::IoError(e)))?;
         }
         Ok(())
@@ -97,7 +95,14 @@ fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, En
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(if header.options.png_16_bit { BitDepth::Sixteen } else { BitDepth::Eight });
     encoder.set_compression(png::Compression::Fast);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let primaries = header.tone.primaries;
+    if primaries.is_srgb() {
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    } else {
+        // For programs that know no cICP: the nearest power to the curve of sRGB.
+        encoder.set_source_gamma(png::ScaledFloat::from_scaled(45_455));
+        encoder.set_source_chromaticities(chunk_of(&primaries.chromaticities()));
+    }
     for (key, text) in &header.metadata {
         if text.is_ascii() && key.is_ascii() {
             encoder.add_text_chunk(key.clone(), text.clone())?;
@@ -105,7 +110,16 @@ fn stream(sink: Sink, header: &Header) -> Result<StreamWriter<'static, Sink>, En
             encoder.add_itxt_chunk(key.clone(), text.clone())?;
         }
     }
-    encoder.write_header()?.into_stream_writer()
+    let mut writer = encoder.write_header()?;
+    if let Some(number) = primaries.code_point().filter(|_| !primaries.is_srgb()) {
+        writer.write_chunk(png::chunk::cICP, &[number, SRGB_CURVE, 0, 1])?;
+    }
+    writer.into_stream_writer()
+}
+
+fn chunk_of(c: &Chromaticities) -> png::SourceChromaticities {
+    let pair = |[x, y]: [f64; 2]| (x as f32, y as f32);
+    png::SourceChromaticities::new(pair(c.white), pair(c.red), pair(c.green), pair(c.blue))
 }
 
 fn failed(place: &str, error: EncodingError) -> ImageError {
@@ -123,8 +137,8 @@ fn unreadable(source: Source, error: DecodingError) -> ImageError {
     }
 }
 
-/// Any PNG as linear light: levels decoded by the curve that the file names, sRGB when it names none; alpha is
-/// left out.
+/// Any PNG as linear light: levels decoded by the curve that the file names, sRGB when it names none, in the primaries of sRGB
+/// whatever those of the file; alpha is left out.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let mut decoder = png::Decoder::new(&mut *bytes);
     decoder.set_transformations(png::Transformations::EXPAND);
@@ -135,7 +149,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
         Encoding::Gamma(gamma) => Box::new(Gamma { gamma }),
         _ => Box::new(Srgb {}),
     };
-    let interlaced = info.interlaced;
+    let (interlaced, matrix) = (info.interlaced, to_srgb(info));
     let (color, depth) = reader.output_color_type();
     let row = Row::new(color, depth, curve.as_ref(), u64::from(width) * u64::from(height));
     let mut pixels = Vec::new();
@@ -148,12 +162,32 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
             row.append(bytes.data(), &mut pixels);
         }
     }
+    if let Some(matrix) = matrix {
+        pixels.iter_mut().for_each(|pixel| *pixel = matrix.color(*pixel));
+    }
     source.image(width, height, pixels)
+}
+
+/// What turns the file's primaries into those of sRGB, where it names others: by cICP, or else by cHRM.
+fn to_srgb(info: &png::Info) -> Option<Matrix> {
+    if let Some(codes) = &info.coding_independent_code_points {
+        let named = |p: &Primaries| p.code_point() == Some(codes.color_primaries);
+        return Primaries::ALL.into_iter().find(named)?.chromaticities().to_srgb();
+    }
+    if info.srgb.is_some() || info.icc_profile.is_some() {
+        return None;
+    }
+    let chunk = info.chrm_chunk?;
+    let pair = |(x, y): (png::ScaledFloat, png::ScaledFloat)| [x, y].map(|v| f64::from(v.into_value()));
+    let [red, green, blue, white] = [chunk.red, chunk.green, chunk.blue, chunk.white].map(pair);
+    Chromaticities { red, green, blue, white }.to_srgb()
 }
 
 /// The curve that the file names, sRGB when it names none.
 fn encoding(info: &png::Info) -> Encoding {
+    let codes = info.coding_independent_code_points.as_ref().map(|codes| codes.transfer_function);
     match (info.srgb, info.gama_chunk) {
+        _ if codes == Some(SRGB_CURVE) => Encoding::Srgb,
         (None, Some(gama)) if gama.into_value() > 0.0 => Encoding::Gamma(1.0 / f64::from(gama.into_value())),
         _ => Encoding::Srgb,
     }

@@ -3,7 +3,7 @@
 use super::{Header, ReadSeek, RowWriter, Source};
 use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
-use crate::tone::Quantizer;
+use crate::tone::Levels;
 use crate::{Format, ImageError};
 use image_webp::{ColorType, DecodingError, EncodingError, WebPDecoder, WebPEncoder};
 use juggler_math::{Image, Rgb};
@@ -12,7 +12,7 @@ use std::io::{BufRead, Seek, Write};
 /// Gathers rows and encodes them at the end.
 pub(super) struct Writer {
     destination: Destination,
-    quantizer: Quantizer,
+    levels: Levels,
     size: (u32, u32),
     bytes: Vec<u8>,
 }
@@ -21,7 +21,7 @@ impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Self {
         Self {
             destination,
-            quantizer: Quantizer::new(&header.tone, 255),
+            levels: Levels::bytes(&header.tone, header.width),
             size: (header.width, header.height),
             bytes: Vec::with_capacity(header.pixels() as usize * 3),
         }
@@ -30,7 +30,7 @@ impl Writer {
 
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        self.quantizer.append_bytes(rows, &mut self.bytes);
+        self.levels.append(rows, &mut self.bytes);
         Ok(())
     }
 

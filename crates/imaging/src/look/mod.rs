@@ -61,7 +61,9 @@ impl Writer {
         if look == Look::Plain {
             return begin(header);
         }
-        let inner = begin(&Header { tone: Tone::default(), ..header.clone() })?;
+        // Levels already: nothing lies between them.
+        let tone = Tone { dither: false, ..Tone::default() };
+        let inner = begin(&Header { tone, ..header.clone() })?;
         let quantizer = Quantizer::new(&header.tone, 255);
         Ok(Box::new(Self { inner, quantizer, look, width: header.width as usize, bytes: Vec::new() }))
     }

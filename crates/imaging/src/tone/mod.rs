@@ -1,18 +1,41 @@
-//! Tone: from linear light to the levels of an sRGB display. Exposure first, then a curve per channel. Another
-//! curve than sRGB is a look, as the Amiga's pictures had one: files do not undo it by a tag of their own.
+//! Tone: from linear light to the levels of a display. Exposure first, then white balance, then a curve: one for each channel
+//! (`linear`, `srgb`, `gamma`: looks of which files tell nothing, as the Amiga's pictures had one), or one that crosses channels
+//! (`reinhard`, `aces`, `agx`, `pbr_neutral`), after which the display's own curve follows, that of sRGB. In between come the file's
+//! primaries. What a curve per channel gives beyond 0 and 1 is clipped per channel; behind one that crosses them it is brought
+//! back towards the grey of its own luminance.
 //! In JSON: `{"curve": {"srgb": {}}, "exposure_stops": 0}`.
 
+mod aces;
+mod agx;
+mod development;
+mod dither;
 mod gamma;
+mod gamut;
 mod linear;
+mod matrix;
+mod pbr_neutral;
+mod primaries;
 mod quantizer;
+mod reinhard;
 mod srgb;
+mod white_balance;
 
+pub use aces::Aces;
+pub use agx::{Agx, AgxLook};
 pub use gamma::Gamma;
 pub use linear::Linear;
+pub use pbr_neutral::PbrNeutral;
+pub use primaries::{Chromaticities, Primaries};
 pub use quantizer::Quantizer;
+pub use reinhard::Reinhard;
 pub use srgb::Srgb;
+pub use white_balance::WhiteBalance;
 
-use juggler_math::fun;
+pub(crate) use dither::Levels;
+pub(crate) use matrix::Matrix;
+
+use development::Development;
+use juggler_math::{Rgb, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +45,21 @@ pub trait Curve: Send + Sync {
     fn encode(&self, linear: f64) -> f64;
     /// Display value 0 to 1 → linear light.
     fn decode(&self, encoded: f64) -> f64;
+}
+
+/// A curve that needs all channels of a colour.
+pub trait ToneMapper: Send + Sync {
+    /// Linear light of the scene, exposed (finite, also below 0) → linear light of a display, 0 to 1 but for colours that it cannot
+    /// show; both in the primaries of sRGB.
+    fn map(&self, light: Rgb) -> Rgb;
+}
+
+/// What a curve is.
+pub enum Response<'a> {
+    /// The same for each channel.
+    Channels(&'a dyn Curve),
+    /// Of a colour as a whole; the display's own curve follows, that of sRGB.
+    Colors(&'a dyn ToneMapper),
 }
 
 /// Every curve. In JSON: `{"srgb": {}}`.
@@ -34,15 +72,35 @@ pub enum AnyCurve {
     Gamma(Gamma),
     #[allow(missing_docs, reason = "the kind's own documentation says it")]
     Linear(Linear),
+    #[allow(missing_docs, reason = "the kind's own documentation says it")]
+    Reinhard(Reinhard),
+    #[allow(missing_docs, reason = "the kind's own documentation says it")]
+    Aces(Aces),
+    #[allow(missing_docs, reason = "the kind's own documentation says it")]
+    Agx(Agx),
+    #[allow(missing_docs, reason = "the kind's own documentation says it")]
+    PbrNeutral(PbrNeutral),
 }
 
 impl AnyCurve {
     /// The curve behind the name.
-    pub fn curve(&self) -> &dyn Curve {
+    pub fn response(&self) -> Response<'_> {
         match self {
-            Self::Srgb(curve) => curve,
-            Self::Gamma(curve) => curve,
-            Self::Linear(curve) => curve,
+            Self::Srgb(curve) => Response::Channels(curve),
+            Self::Gamma(curve) => Response::Channels(curve),
+            Self::Linear(curve) => Response::Channels(curve),
+            Self::Reinhard(mapper) => Response::Colors(mapper),
+            Self::Aces(mapper) => Response::Colors(mapper),
+            Self::Agx(mapper) => Response::Colors(mapper),
+            Self::PbrNeutral(mapper) => Response::Colors(mapper),
+        }
+    }
+
+    /// The last step, which is one for each channel: the curve itself, or that of the display.
+    pub fn channel_curve(&self) -> &dyn Curve {
+        match self.response() {
+            Response::Channels(curve) => curve,
+            Response::Colors(_) => &Srgb {},
         }
     }
 }
@@ -54,8 +112,8 @@ impl Default for AnyCurve {
 }
 
 /// How linear light becomes the levels of a picture file. Formats that keep linear light (EXR, HDR, PFM)
-/// ignore it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// ignore it, but for the primaries of an EXR.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Tone {
     /// The curve.
@@ -63,17 +121,45 @@ pub struct Tone {
     /// Photographic stops: each doubles the light before the curve; negative ones halve it.
     #[schemars(range(min = -64, max = 64))]
     pub exposure_stops: f32,
+    /// Which light is to look white. Without it, light stays as it is: that of 6,504 K is white.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub white_balance: Option<WhiteBalance>,
+    /// The primaries of the file: PNG takes `display_p3` and `rec2020`, EXR these and `acescg`; others are sRGB.
+    #[serde(skip_serializing_if = "Primaries::is_srgb")]
+    #[schemars(extend("default" = "srgb"))]
+    pub primaries: Primaries,
+    /// Whether pictures of 8 bits are dithered, so that gradients show no steps. What is exactly a level stays that
+    /// level. Films, looks and screens are not dithered.
+    #[serde(skip_serializing_if = "is_true")]
+    #[schemars(extend("default" = true))]
+    pub dither: bool,
+}
+
+impl Default for Tone {
+    fn default() -> Self {
+        Self::new(AnyCurve::Srgb(Srgb {}))
+    }
+}
+
+fn is_true(value: &bool) -> bool {
+    *value
 }
 
 impl Tone {
+    /// A curve, and nothing else that is unusual.
+    pub const fn new(curve: AnyCurve) -> Self {
+        Self { curve, exposure_stops: 0.0, white_balance: None, primaries: Primaries::Srgb, dither: true }
+    }
+
     /// The factor on linear light.
     pub fn gain(&self) -> f32 {
         fun::exp2(self.exposure_stops)
     }
 
-    /// The formula: the level, 0 to `top`, nearest to the curve's value. [`Quantizer`] gives the same, faster.
-    pub fn level(&self, linear: f32, top: u16) -> u16 {
-        level(self.curve.curve(), linear * self.gain(), top)
+    /// The formula: each channel's level, 0 to `top`, nearest to the curve's value. [`Quantizer`] gives the same, faster.
+    pub fn levels(&self, pixel: Rgb, top: u16) -> [u16; 3] {
+        let light = Development::new(self).map_or_else(|| pixel * self.gain(), |development| development.light(pixel));
+        light.to_array().map(|v| level(self.curve.channel_curve(), v, top))
     }
 }
 
@@ -92,16 +178,27 @@ mod tests {
         assert_eq!(read("{}"), Tone::default());
         assert_eq!(read(r#"{"curve": {"srgb": {}}, "exposure_stops": 0}"#), Tone::default());
         let gamma = read(r#"{"curve": {"gamma": {"gamma": 1.8}}, "exposure_stops": -1.5}"#);
-        assert_eq!(gamma, Tone { curve: AnyCurve::Gamma(Gamma { gamma: 1.8 }), exposure_stops: -1.5 });
+        assert_eq!(gamma, Tone { exposure_stops: -1.5, ..Tone::new(AnyCurve::Gamma(Gamma { gamma: 1.8 })) });
         assert_eq!(read(r#"{"curve": {"gamma": {}}}"#).curve, AnyCurve::Gamma(Gamma { gamma: 2.2 }));
         assert_eq!(read(&serde_json::to_string(&gamma).unwrap()), gamma);
+        let rich = r#"{"curve": {"agx": {"look": "punchy"}}, "white_balance": {"kelvin": 3200}, "primaries": "display_p3",
+            "dither": false}"#;
+        let rich = read(rich);
+        assert_eq!(
+            (&rich.curve, rich.primaries),
+            (&AnyCurve::Agx(Agx { look: AgxLook::Punchy }), Primaries::DisplayP3)
+        );
+        assert!(!rich.dither && rich.white_balance == Some(WhiteBalance { kelvin: 3200.0, tint: 0.0 }));
+        assert_eq!(read(&serde_json::to_string(&rich).unwrap()), rich);
+        // What is not said is not written: parts and pictures of earlier versions stay the same.
+        assert_eq!(serde_json::to_string(&Tone::default()).unwrap(), r#"{"curve":{"srgb":{}},"exposure_stops":0.0}"#);
         let schema = serde_json::to_string(&schemars::schema_for!(Tone)).unwrap();
         assert!(schema.contains("\"exclusiveMinimum\":0") && schema.contains("\"srgb\""), "{schema}");
     }
 
     #[test]
     fn known_levels() {
-        let level = |curve, linear| Tone { curve, exposure_stops: 0.0 }.level(linear, 255);
+        let level = |curve, linear| Tone::new(curve).levels(Rgb::splat(linear), 255)[1];
         // 18 % grey in sRGB is level 118; half light is 188.
         assert_eq!((level(AnyCurve::default(), 0.18), level(AnyCurve::default(), 0.5)), (118, 188));
         assert_eq!(level(AnyCurve::Gamma(Gamma { gamma: 2.2 }), 0.5), 186);
@@ -127,7 +224,8 @@ mod tests {
         let plain = Tone::default();
         for i in 0..1000 {
             let x = i as f32 * 1e-3;
-            assert_eq!(bright.level(x, 65_535), plain.level(x * 2.0, 65_535));
+            let (x, twice) = (Rgb::splat(x), Rgb::splat(x * 2.0));
+            assert_eq!(bright.levels(x, 65_535), plain.levels(twice, 65_535));
         }
     }
 
@@ -136,9 +234,75 @@ mod tests {
         for curve in [AnyCurve::default(), AnyCurve::Gamma(Gamma { gamma: 1.8 }), AnyCurve::Linear(Linear {})] {
             for i in 0..=1000 {
                 let encoded = f64::from(i) / 1000.0;
-                let back = curve.curve().encode(curve.curve().decode(encoded));
+                let back = curve.channel_curve().encode(curve.channel_curve().decode(encoded));
                 assert!((back - encoded).abs() < 1e-7, "{curve:?} {encoded} {back}");
             }
+        }
+    }
+
+    fn every_curve() -> Vec<AnyCurve> {
+        vec![
+            AnyCurve::default(),
+            AnyCurve::Gamma(Gamma::default()),
+            AnyCurve::Linear(Linear {}),
+            AnyCurve::Reinhard(Reinhard::default()),
+            AnyCurve::Aces(Aces {}),
+            AnyCurve::Agx(Agx::default()),
+            AnyCurve::Agx(Agx { look: AgxLook::Golden }),
+            AnyCurve::PbrNeutral(PbrNeutral {}),
+        ]
+    }
+
+    #[test]
+    fn every_curve_takes_every_number() {
+        let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1e-40, 0.3, 1e38];
+        for curve in every_curve() {
+            let tone = Tone { white_balance: Some(WhiteBalance { kelvin: 3000.0, tint: 5.0 }), ..Tone::new(curve) };
+            for pixel in odd.iter().flat_map(|r| odd.iter().map(move |g| Rgb::new(*r, *g, 0.5))) {
+                let level = |primaries| Tone { primaries, ..tone.clone() }.levels(pixel, 255);
+                let all = Primaries::ALL.map(level);
+                assert!(all.iter().flatten().all(|level| *level <= 255), "{tone:?} {pixel:?}");
+            }
+        }
+        for curve in every_curve() {
+            let tone = Tone::new(curve);
+            assert!(tone.levels(Rgb::BLACK, 255).iter().all(|level| *level <= 1), "{tone:?}: black is black");
+            let is_golden = tone.curve == AnyCurve::Agx(Agx { look: AgxLook::Golden });
+            let white = tone.levels(Rgb::splat(1e6), 255);
+            assert!(white.iter().all(|level| *level >= 254) != is_golden, "{tone:?}: light is white {white:?}");
+            assert_eq!(tone.levels(Rgb::splat(f32::INFINITY), 255), tone.levels(Rgb::splat(1e30), 255));
+        }
+    }
+
+    #[test]
+    fn another_white_makes_its_grey_neutral_and_others_not() {
+        let light = WhiteBalance { kelvin: 2856.0, tint: 0.0 };
+        let bulb = light.matrix().inverse().color(Rgb::splat(0.4));
+        let seen = |white_balance| Tone { white_balance, ..Tone::default() }.levels(bulb, 65_535);
+        let [r, g, b] = seen(Some(light));
+        assert!(r.abs_diff(g) <= 1 && g.abs_diff(b) <= 1, "{r} {g} {b}");
+        let [r, g, b] = seen(None);
+        assert!(r > g + 5000 && g > b + 5000, "{r} {g} {b}");
+    }
+
+    #[test]
+    fn wide_primaries_show_the_same_colours_by_other_numbers() {
+        for curve in
+            every_curve().into_iter().filter(|curve| !matches!(curve, AnyCurve::Gamma(_) | AnyCurve::Linear(_)))
+        {
+            let tone = Tone { primaries: Primaries::Rec2020, ..Tone::new(curve) };
+            let pixel = Rgb::new(0.2, 0.05, 0.1);
+            let decode = |level: u16| tone.channel(f64::from(level) / 65_535.0);
+            let back = Primaries::Rec2020.conversion().unwrap().inverse();
+            let wide = back.apply(tone.levels(pixel, 65_535).map(decode));
+            let plain = Tone { primaries: Primaries::Srgb, ..tone.clone() }.levels(pixel, 65_535).map(decode);
+            assert!(wide.iter().zip(plain).all(|(a, b)| (a - b).abs() < 1e-4), "{tone:?} {wide:?} {plain:?}");
+        }
+    }
+
+    impl Tone {
+        fn channel(&self, encoded: f64) -> f64 {
+            self.curve.channel_curve().decode(encoded)
         }
     }
 }

@@ -1,17 +1,20 @@
 //! The tone formula as a table. A curve never falls, so each level has a smallest input: those thresholds,
 //! found once to the last bit, give exactly the formula's levels without evaluating a power per channel.
 //! Where to look among them says a second table, indexed by an input's exponent and first mantissa bits.
+//! What crosses channels comes before the table.
 
-use super::{Tone, level};
+use super::{Development, Tone, level};
 use juggler_math::Rgb;
 
 /// Bits dropped from an f32 to index the second table: what stays is the exponent and 8 bits of mantissa.
 const SHIFT: u32 = 15;
 
-/// Turns linear light into levels, with the results of [`Tone::level`].
+/// Turns linear light into levels, with the results of [`Tone::levels`].
 #[derive(Clone, Debug)]
 pub struct Quantizer {
     gain: f32,
+    /// What comes before the curve where channels do not go their own ways.
+    development: Option<Development>,
     /// `thresholds[k]`: the smallest positive input of level k + 1; NaN when there is none, as for k = top.
     thresholds: Vec<f32>,
     /// `start[i]`: level of the smallest input in cell i.
@@ -21,7 +24,7 @@ pub struct Quantizer {
 impl Quantizer {
     /// For levels 0 to `top`.
     pub fn new(tone: &Tone, top: u16) -> Self {
-        let curve = tone.curve.curve();
+        let curve = tone.curve.channel_curve();
         let mut last = 1;
         let thresholds = (1..=top)
             .map(|k| {
@@ -41,12 +44,19 @@ impl Quantizer {
             reached as u16
         });
         let start = start.collect();
-        Self { gain: tone.gain(), thresholds, start }
+        Self { gain: tone.gain(), development: Development::new(tone), thresholds, start }
     }
 
-    /// The level of a linear value; 0 for NaN.
-    pub fn level(&self, linear: f32) -> u16 {
-        let exposed = linear * self.gain;
+    /// The levels of a pixel; 0 for NaN.
+    pub fn levels(&self, pixel: Rgb) -> [u16; 3] {
+        match &self.development {
+            None => pixel.to_array().map(|v| self.level(v * self.gain)),
+            Some(development) => development.light(pixel).to_array().map(|v| self.level(v)),
+        }
+    }
+
+    /// The level of one channel.
+    fn level(&self, exposed: f32) -> u16 {
         if exposed > 0.0 {
             let cell = (exposed.to_bits() >> SHIFT) as usize;
             let (low, high) = (self.start[cell], self.start[cell + 1]);
@@ -65,7 +75,7 @@ impl Quantizer {
         let start = bytes.len();
         bytes.resize(start + pixels.len() * 3, 0);
         for (target, pixel) in bytes[start..].chunks_exact_mut(3).zip(pixels) {
-            target.copy_from_slice(&pixel.to_array().map(|v| self.level(v) as u8));
+            target.copy_from_slice(&self.levels(*pixel).map(|level| level as u8));
         }
     }
 
@@ -74,7 +84,7 @@ impl Quantizer {
         let start = bytes.len();
         bytes.resize(start + pixels.len() * 6, 0);
         for (target, pixel) in bytes[start..].chunks_exact_mut(6).zip(pixels) {
-            let [r, g, b] = pixel.to_array().map(|v| self.level(v).to_be_bytes());
+            let [r, g, b] = self.levels(*pixel).map(u16::to_be_bytes);
             target.copy_from_slice(&[r[0], r[1], g[0], g[1], b[0], b[1]]);
         }
     }
@@ -113,7 +123,7 @@ fn first_bits(low: u32, guess: u32, holds: impl Fn(u32) -> bool) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tone::{AnyCurve, Gamma, Linear};
+    use crate::tone::{Agx, AnyCurve, Gamma, Linear, Primaries, Reinhard, WhiteBalance};
     use juggler_math::testing::Random;
 
     fn tones() -> Vec<Tone> {
@@ -124,8 +134,16 @@ mod tests {
             AnyCurve::Gamma(Gamma { gamma: 9.0 }),
             AnyCurve::Linear(Linear {}),
         ];
-        let tone = |curve: &AnyCurve, exposure_stops| Tone { curve: curve.clone(), exposure_stops };
+        let tone = |curve: &AnyCurve, exposure_stops| Tone { exposure_stops, ..Tone::new(curve.clone()) };
         curves.iter().flat_map(|c| [tone(c, 0.0), tone(c, -2.7)]).collect()
+    }
+
+    fn grey(quantizer: &Quantizer, x: f32) -> u16 {
+        quantizer.levels(Rgb::splat(x))[0]
+    }
+
+    fn formula(tone: &Tone, x: f32, top: u16) -> u16 {
+        tone.levels(Rgb::splat(x), top)[2]
     }
 
     #[test]
@@ -137,7 +155,21 @@ mod tests {
             let any_bits = (0..5_000).map(|_| f32::from_bits(random.bits())).collect::<Vec<_>>();
             let usual = (0..5_000).map(|_| random.range(-0.1, 1.2)).collect::<Vec<_>>();
             for x in special.into_iter().chain(any_bits).chain(usual) {
-                assert_eq!(quantizer.level(x), tone.level(x, top), "{tone:?} {top} {x:e}");
+                assert_eq!(grey(&quantizer, x), formula(tone, x, top), "{tone:?} {top} {x:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_table_equals_the_formula_where_channels_are_crossed_too() {
+        let mut random = Random::new(2);
+        let balanced = Tone { white_balance: Some(WhiteBalance::default()), ..Tone::default() };
+        let wide = Tone { primaries: Primaries::Rec2020, ..Tone::new(AnyCurve::Agx(Agx::default())) };
+        for tone in [balanced, wide, Tone::new(AnyCurve::Reinhard(Reinhard::default()))] {
+            let quantizer = Quantizer::new(&tone, 65_535);
+            for _ in 0..2_000 {
+                let pixel = random.rgb() * random.range(-0.1, 3.0);
+                assert_eq!(quantizer.levels(pixel), tone.levels(pixel, 65_535), "{tone:?} {pixel:?}");
             }
         }
     }
@@ -148,7 +180,7 @@ mod tests {
             let quantizer = Quantizer::new(tone, 255);
             for &t in &quantizer.thresholds {
                 for x in [t.next_down(), t, t.next_up()] {
-                    assert_eq!(quantizer.level(x), tone.level(x, 255), "{tone:?} {x:e}");
+                    assert_eq!(grey(&quantizer, x), formula(tone, x, 255), "{tone:?} {x:e}");
                 }
             }
         }
@@ -160,8 +192,8 @@ mod tests {
             let quantizer = Quantizer::new(&Tone::default(), top);
             let curve = AnyCurve::default();
             for k in 0..=top {
-                let linear = curve.curve().decode(f64::from(k) / f64::from(top)) as f32;
-                assert_eq!(quantizer.level(linear), k);
+                let linear = curve.channel_curve().decode(f64::from(k) / f64::from(top)) as f32;
+                assert_eq!(grey(&quantizer, linear), k);
             }
         }
     }
@@ -169,8 +201,8 @@ mod tests {
     #[test]
     fn absurd_gammas_do_not_hang() {
         for gamma in [1e-30, 1e30, -1.0, 0.0, f64::NAN] {
-            let quantizer = Quantizer::new(&Tone { curve: AnyCurve::Gamma(Gamma { gamma }), exposure_stops: 0.0 }, 255);
-            assert_eq!(quantizer.level(f32::NAN), 0);
+            let quantizer = Quantizer::new(&Tone::new(AnyCurve::Gamma(Gamma { gamma })), 255);
+            assert_eq!(grey(&quantizer, f32::NAN), 0);
         }
     }
 }

@@ -106,6 +106,14 @@ impl Session {
         // Whether there are any is told with the pictures.
         let header = reel.header([width, height], frames.max(1), animation.frames_per_second);
         reel.check(&header)?;
+        let mut tone = scene.description.tone.clone();
+        self.plan.settings.apply_to(&mut scene.description.render.clone(), &mut tone)?;
+        if !tone.primaries.is_srgb() {
+            let name = tone.primaries.name();
+            return Err(Failure::Wrong(format!(
+                "a film cannot have the primaries `{name}`: only PNG and EXR pictures can"
+            )));
+        }
         Ok(header)
     }
 
@@ -177,6 +185,11 @@ impl Session {
             // The scene's own tone is no part of its fingerprint.
             let tone = serde_json::to_string(&header.tone).unwrap_or_default();
             header.metadata.push((reel::TONE.to_owned(), tone));
+        }
+        // Its frames are read again as what they are, and what stands still in a film is to stand still.
+        header.tone.dither &= self.plan.reel.is_none();
+        if let Product::Picture(encoding) = self.plan.product {
+            header.check_primaries(encoding.format)?;
         }
         let interrupts = match interrupts {
             Some(interrupts) => interrupts,

@@ -1,0 +1,210 @@
+//! AgX (Troy Sobotka, AgX-S2O3, 2022), as it became known through Blender 4, Filament and three.js: in the primaries of BT.2020
+//! colours are drawn together (the inset, so that bright ones lose their colour gracefully), 16.5 stops around middle grey
+//! are taken by their logarithm through a sigmoid per channel, and drawn apart again. In JSON: `{"agx": {"look": "punchy"}}`.
+//!
+//! - Inset and outset are the matrices of Filament and three.js. The sigmoid is Sobotka's own closed form (slope 2 at the pivot
+//!   of 10 / 16.5 and 0.5; powers 3 in the shadows and 3.25 in the lights), where most programs take a polynomial
+//!   fitted to it (Benjamin Wrensch, Minimal AgX implementation, 2023): it truly begins at 0 and ends at 1.
+//! - The looks are those of Wrensch: slope, power and saturation (ASC CDL) after the sigmoid.
+//! - Deviation: what comes out beyond the display is brought back along a line of constant luminance and hue instead of being
+//!   clipped per channel.
+
+use super::ToneMapper;
+use juggler_math::{Rgb, fun};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Log2 of the darkest and the brightest light: 10 stops below and 6.5 above middle grey of 0.18.
+const DARKEST: f32 = -12.473_931;
+const BRIGHTEST: f32 = 4.026_069;
+/// Where middle grey lies among them, and what it becomes.
+const PIVOT: [f32; 2] = [10.0 / 16.5, 0.5];
+/// The sigmoid's slope there.
+const SLOPE: f32 = 2.0;
+/// How sharply it bends in shadows and lights, and the scales that follow: it goes through 0 at 0 and through 1 at 1.
+const POWERS: [f32; 2] = [3.0, 3.25];
+const SCALES: [f32; 2] = [0.512_277_4, 0.541_464_2];
+/// The display that the curve is made for: its exponent.
+const DISPLAY: f32 = 2.2;
+
+/// AgX: a picture like film's. Bright colours go softly to white, none becomes garish; sixteen stops fit. The range is meant for
+/// scenes in which middle grey is 0.18.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Agx {
+    /// How strong it is.
+    pub look: AgxLook,
+}
+
+/// What is done with AgX's colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AgxLook {
+    /// Nothing: flat, a base to grade.
+    #[default]
+    Base,
+    /// More contrast and colour.
+    Punchy,
+    /// Warm and bright.
+    Golden,
+}
+
+impl ToneMapper for Agx {
+    fn map(&self, light: Rgb) -> Rgb {
+        let drawn_together = inset(to_rec2020(light));
+        let encoded = drawn_together.map(|v| (fun::log2(v.max(1e-10)) - DARKEST) / (BRIGHTEST - DARKEST));
+        let contrast = self.look.grade(encoded.map(sigmoid));
+        from_rec2020(outset(contrast).map(|v| fun::powf(v.max(0.0), DISPLAY)))
+    }
+}
+
+impl AgxLook {
+    fn grade(self, color: Rgb) -> Rgb {
+        let (slope, power, saturation) = match self {
+            Self::Base => return color,
+            Self::Punchy => (Rgb::WHITE, 1.35, 1.4),
+            Self::Golden => (Rgb::new(1.0, 0.9, 0.5), 0.8, 0.8),
+        };
+        let graded = (color * slope).map(|v| fun::powf(v, power));
+        Rgb::splat(graded.luminance()).lerp(graded, saturation)
+    }
+}
+
+/// The curve over the logarithm, 0 to 1.
+fn sigmoid(x: f32) -> f32 {
+    let x = x.clamp(0.0, 1.0);
+    let [from, to] = PIVOT;
+    let (side, sign) = if x < from { (0, -1.0) } else { (1, 1.0) };
+    let scale = SCALES[side];
+    let term = SLOPE * (x - from) * sign / scale;
+    let bent = term / fun::powf(1.0 + fun::powf(term, POWERS[side]), 1.0 / POWERS[side]);
+    (to + sign * scale * bent).clamp(0.0, 1.0)
+}
+
+fn inset(Rgb { r, g, b }: Rgb) -> Rgb {
+    Rgb::new(
+        0.856_627_15 * r + 0.095_121_24 * g + 0.048_251_606 * b,
+        0.137_318_97 * r + 0.761_242 * g + 0.101_439_04 * b,
+        0.111_898_21 * r + 0.076_799_42 * g + 0.811_302_4 * b,
+    )
+}
+
+fn outset(Rgb { r, g, b }: Rgb) -> Rgb {
+    Rgb::new(
+        1.127_100_6 * r - 0.110_606_64 * g - 0.016_493_939 * b,
+        -0.141_329_76 * r + 1.157_823_7 * g - 0.016_493_939 * b,
+        -0.141_329_76 * r - 0.110_606_64 * g + 1.251_936_4 * b,
+    )
+}
+
+/// ITU-R BT.2087-0, with more digits.
+fn to_rec2020(Rgb { r, g, b }: Rgb) -> Rgb {
+    Rgb::new(
+        0.627_403_9 * r + 0.329_283 * g + 0.043_313_07 * b,
+        0.069_097_29 * r + 0.919_540_4 * g + 0.011_362_32 * b,
+        0.016_391_44 * r + 0.088_013_31 * g + 0.895_595_25 * b,
+    )
+}
+
+fn from_rec2020(Rgb { r, g, b }: Rgb) -> Rgb {
+    Rgb::new(
+        1.660_491 * r - 0.587_641_1 * g - 0.072_849_86 * b,
+        -0.124_550_48 * r + 1.132_899_9 * g - 0.008_349_422 * b,
+        -0.018_150_763 * r - 0.100_578_9 * g + 1.118_729_7 * b,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tone::primaries::Primaries;
+    use juggler_math::testing::Random;
+
+    /// The published steps in double precision, `curve` being the sigmoid.
+    fn reference(light: [f64; 3], look: AgxLook, curve: fn(f64) -> f64) -> [f64; 3] {
+        let times = |m: [[f64; 3]; 3], v: [f64; 3]| m.map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum::<f64>());
+        // Columns, as shaders write them.
+        let columns = |m: [[f64; 3]; 3]| [0, 1, 2].map(|row| [m[0][row], m[1][row], m[2][row]]);
+        let there = Primaries::Rec2020.conversion().unwrap();
+        let inset = columns([
+            [0.856627153315983, 0.137318972929847, 0.11189821299995],
+            [0.0951212405381588, 0.761241990602591, 0.0767994186031903],
+            [0.0482516061458583, 0.101439036467562, 0.811302368396859],
+        ]);
+        let outset = columns([
+            [1.1271005818144368, -0.1413297634984383, -0.14132976349843826],
+            [-0.11060664309660323, 1.157823702216272, -0.11060664309660294],
+            [-0.016493938717834573, -0.016493938717834257, 1.2519364065950405],
+        ]);
+        let (least, most) = ((0.18 * 2f64.powi(-10)).log2(), (0.18 * 2f64.powf(6.5)).log2());
+        let encode = |v: f64| ((v.max(1e-10).log2() - least) / (most - least)).clamp(0.0, 1.0);
+        let mut v = times(inset, there.apply(light)).map(encode).map(curve);
+        let (slope, power, saturation) = match look {
+            AgxLook::Base => ([1.0; 3], 1.0, 1.0),
+            AgxLook::Punchy => ([1.0; 3], 1.35, 1.4),
+            AgxLook::Golden => ([1.0, 0.9, 0.5], 0.8, 0.8),
+        };
+        v = [0, 1, 2].map(|i| f64::powf((v[i] * slope[i]).max(0.0), power));
+        let luma = 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2];
+        v = v.map(|v| luma + saturation * (v - luma));
+        there.inverse().apply(times(outset, v).map(|v| v.max(0.0).powf(2.2)))
+    }
+
+    /// Sobotka's equations, term by term.
+    fn closed_form(x: f64) -> f64 {
+        let (px, py, slope) = (10.0 / 16.5, 0.5, 2.0);
+        let (power, sign) = if x < px { (3.0, -1.0) } else { (3.25, 1.0) };
+        let (rx, ry) = if x < px { (px, py) } else { (1.0 - px, 1.0 - py) };
+        let scale = ((slope * rx).powf(-power) * ((slope * rx / ry).powf(power) - 1.0)).powf(-1.0 / power) * sign;
+        let term = slope * (x - px) / scale;
+        scale * term / (1.0 + term.powf(power)).powf(1.0 / power) + py
+    }
+
+    /// Wrensch's polynomial.
+    fn polynomial(x: f64) -> f64 {
+        15.5 * x.powi(6) - 40.14 * x.powi(5) + 31.96 * x.powi(4) - 6.868 * x.powi(3) + 0.4298 * x * x + 0.1191 * x
+            - 0.00232
+    }
+
+    #[test]
+    fn the_sigmoid_is_the_one_that_the_polynomial_was_fitted_to() {
+        let mut squares = 0.0;
+        for i in 0..=1000 {
+            let x = f64::from(i) / 1000.0;
+            assert!((f64::from(sigmoid(x as f32)) - closed_form(x)).abs() < 2e-6, "{x}");
+            squares += (closed_form(x) - polynomial(x)).powi(2) / 1001.0;
+        }
+        assert!(squares < 8e-6, "mean squared error {squares}");
+        assert!(sigmoid(0.0) < 1e-6 && sigmoid(1.0) > 1.0 - 1e-6);
+    }
+
+    #[test]
+    fn it_is_the_published_formula() {
+        let mut random = Random::new(10);
+        for look in [AgxLook::Base, AgxLook::Punchy, AgxLook::Golden] {
+            let mut off = 0.0;
+            for _ in 0..2_000 {
+                let light = random.rgb() * fun::exp2(random.range(-9.0, 7.0));
+                let found = Agx { look }.map(light).to_array().map(f64::from);
+                let exact = reference(light.to_array().map(f64::from), look, closed_form);
+                let usual = reference(light.to_array().map(f64::from), look, polynomial);
+                for i in 0..3 {
+                    assert!((found[i] - exact[i]).abs() < 1e-5, "{look:?} {light:?}: {found:?} is not {exact:?}");
+                    let screen = |v: f64| v.clamp(0.0, 1.0).powf(1.0 / 2.2);
+                    off += (screen(found[i]) - screen(usual[i])).abs() / 6_000.0;
+                }
+            }
+            assert!(off < 2.0 / 255.0, "{look:?}: {off} from what programs with the polynomial show");
+        }
+    }
+
+    #[test]
+    fn middle_grey_is_half_and_greys_stay_grey() {
+        let Rgb { r, g, b } = Agx::default().map(Rgb::splat(0.18));
+        assert!((fun::powf(g, 1.0 / 2.2) - 0.5).abs() < 1e-4 && (r - g).abs() < 1e-4 && (g - b).abs() < 1e-4);
+        let greys: Vec<f32> =
+            (0..170).map(|i| Agx::default().map(Rgb::splat(fun::exp2(i as f32 * 0.1 - 12.5))).g).collect();
+        assert!(greys.windows(2).all(|pair| pair[0] < pair[1] + 1e-7));
+        assert!((greys[169] - 1.0).abs() < 1e-3 && Agx::default().map(Rgb::new(1e30, -1.0, 0.0)).is_finite());
+    }
+}

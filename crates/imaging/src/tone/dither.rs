@@ -1,0 +1,146 @@
+//! Dither: what lies between two levels of 8 bits becomes the one or the other by the pixel's place, in the right
+//! proportion, so that gradients show no steps. An ordered pattern without a table: the additive recurrence R2 (Martin Roberts, The
+//! unreasonable effectiveness of quasirandom sequences, 2018), whose neighbours differ as those of blue noise do, folded
+//! into a triangle so that it has no jump. All channels of a pixel go the same way: greys stay grey.
+//!
+//! A value is rounded to a 256th of a level first and then up or down by thresholds 0 to 255, so that it moves by less
+//! than a level and what is a level, within 1/512 of one, stays that level everywhere.
+
+use super::{Quantizer, Tone};
+use juggler_math::Rgb;
+
+/// Steps of a level.
+const STEPS: u16 = 256;
+/// 1/p and 1/p² in units of 2^-32, p being the plastic number, p³ = p + 1.
+const ALPHA: [u32; 2] = [3_242_174_889, 2_447_445_414];
+
+/// Levels of a still picture's pixels, from the top left row by row.
+pub(crate) struct Levels {
+    quantizer: Quantizer,
+    depth: Depth,
+    width: u64,
+    /// Pixels so far.
+    place: u64,
+}
+
+enum Depth {
+    Words,
+    Bytes,
+    Dithered,
+}
+
+impl Levels {
+    /// Bytes, of pictures of this width.
+    pub fn bytes(tone: &Tone, width: u32) -> Self {
+        let (top, depth) = if tone.dither { (255 * STEPS, Depth::Dithered) } else { (255, Depth::Bytes) };
+        Self { quantizer: Quantizer::new(tone, top), depth, width: u64::from(width.max(1)), place: 0 }
+    }
+
+    /// Levels of 16 bits, high byte first; they need no dither.
+    pub fn words(tone: &Tone) -> Self {
+        Self { quantizer: Quantizer::new(tone, u16::MAX), depth: Depth::Words, width: 1, place: 0 }
+    }
+
+    /// The next pixels, three levels each.
+    pub fn append(&mut self, pixels: &[Rgb], bytes: &mut Vec<u8>) {
+        match self.depth {
+            Depth::Words => self.quantizer.append_words(pixels, bytes),
+            Depth::Bytes => self.quantizer.append_bytes(pixels, bytes),
+            Depth::Dithered => {
+                bytes.reserve(pixels.len() * 3);
+                for (place, pixel) in (self.place..).zip(pixels) {
+                    let up = threshold((place % self.width) as u32, (place / self.width) as u32);
+                    bytes.extend(self.quantizer.levels(*pixel).map(|fine| ((fine + up) / STEPS) as u8));
+                }
+            }
+        }
+        self.place += pixels.len() as u64;
+    }
+}
+
+/// How many 256ths of a level are added before the rest is cut off, at a pixel: 0 to 255.
+fn threshold(x: u32, y: u32) -> u16 {
+    let at = x.wrapping_mul(ALPHA[0]).wrapping_add(y.wrapping_mul(ALPHA[1]));
+    let folded = if at >> 31 == 0 { at } else { !at };
+    (folded >> 23) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tone::{AnyCurve, Linear};
+
+    fn bytes(tone: &Tone, width: u32, pixels: &[Rgb], piece: usize) -> Vec<u8> {
+        let (mut levels, mut bytes) = (Levels::bytes(tone, width), Vec::new());
+        pixels.chunks(piece).for_each(|piece| levels.append(piece, &mut bytes));
+        bytes
+    }
+
+    fn linear() -> Tone {
+        Tone::new(AnyCurve::Linear(Linear {}))
+    }
+
+    #[test]
+    fn all_thresholds_come_equally_often() {
+        let mut counts = [0_u32; 256];
+        (0..512).for_each(|y| (0..512).for_each(|x| counts[usize::from(threshold(x, y))] += 1));
+        let (least, most) = (counts.iter().min().unwrap(), counts.iter().max().unwrap());
+        assert!(*least > 1000 && *most < 1050, "{least} {most}");
+    }
+
+    #[test]
+    fn the_mean_is_the_value() {
+        // 64 × 64 pixels of one value between two levels, for many values; blue noise is far closer than white noise, whose
+        // standard deviation is 0.5 / 64.
+        for i in 0..=64 {
+            let value = 100.0 + f64::from(i) / 64.0;
+            let flat = vec![Rgb::splat((value / 255.0) as f32); 64 * 64];
+            let bytes = bytes(&linear(), 64, &flat, 4096);
+            let mean = bytes.iter().map(|b| f64::from(*b)).sum::<f64>() / bytes.len() as f64;
+            assert!((mean - value).abs() < 0.004, "{value} became {mean}");
+        }
+    }
+
+    #[test]
+    fn small_places_have_the_right_mean_too() {
+        // Each 8 × 8 pixels of a gradient, as an eye takes them together; rounding is wrong by up to half a level.
+        let (width, height) = (256_u32, 64_u32);
+        let value = |x: u32| 20.0 + 3.0 * f64::from(x) / f64::from(width);
+        let pixels: Vec<Rgb> = (0..width * height).map(|i| Rgb::splat((value(i % width) / 255.0) as f32)).collect();
+        let bytes = bytes(&linear(), width, &pixels, 1000);
+        for corner in (0..height / 8).flat_map(|y| (0..width / 8).map(move |x| [x * 8, y * 8])) {
+            let within = (0..64).map(|i| [corner[0] + i % 8, corner[1] + i / 8]);
+            let error = within.map(|[x, y]| f64::from(bytes[((y * width + x) * 3) as usize]) - value(x)).sum::<f64>();
+            assert!((error / 64.0).abs() < 0.08, "{corner:?}: {}", error / 64.0);
+        }
+    }
+
+    #[test]
+    fn what_is_a_level_stays_that_level() {
+        for tone in [Tone::default(), linear()] {
+            let decode = |k: u32| tone.curve.channel_curve().decode(f64::from(k) / 255.0) as f32;
+            // A little beside it too, as sums of equal samples may be.
+            for nudge in [0.999_997_f32, 1.0, 1.000_003] {
+                let pixels: Vec<Rgb> = (0..256 * 64).map(|i| Rgb::splat(decode(i % 256) * nudge)).collect();
+                for (i, byte) in bytes(&tone, 256, &pixels, 256).iter().enumerate() {
+                    assert_eq!(usize::from(*byte), i / 3 % 256, "{nudge}");
+                }
+            }
+        }
+        let odd = [f32::NAN, f32::NEG_INFINITY, -3.0, f32::INFINITY, 7.0, 0.0].map(Rgb::splat);
+        assert_eq!(bytes(&linear(), 6, &odd, 6), [0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 0, 0, 0]);
+    }
+
+    #[test]
+    fn it_does_not_matter_how_rows_come() {
+        let pixels: Vec<Rgb> = (0..50 * 40).map(|i| Rgb::splat(i as f32 / 2000.0)).collect();
+        let whole = bytes(&Tone::default(), 50, &pixels, 2000);
+        for piece in [50, 150, 7] {
+            assert_eq!(bytes(&Tone::default(), 50, &pixels, piece), whole);
+        }
+        let plain = bytes(&Tone { dither: false, ..Tone::default() }, 50, &pixels, 2000);
+        assert_ne!(plain, whole);
+        // Never further than to the next level.
+        assert!(plain.iter().zip(&whole).all(|(a, b)| a.abs_diff(*b) <= 1));
+    }
+}
