@@ -1,0 +1,160 @@
+//! From what the caller has to what the filter reads: numbers that are numbers, light without the surface's colour, planes.
+
+use crate::features::{self, FEATURES, Feature};
+use crate::grid::Grid;
+use crate::{Noisy, Settings, SimdLevel, blur, outliers};
+use juggler_math::Rgb;
+use rayon::prelude::*;
+
+/// The smallest number that colours are divided by.
+const DARKEST: f32 = 0.05;
+/// Pixels to each side that variances are the mean of.
+const VARIANCE_REACH: usize = 3;
+
+/// Everything that the windows read. Planes have margins; those in phases are sorted by [`Grid::phases`].
+pub(crate) struct Prepared {
+    pub grid: Grid,
+    /// What the light was divided by, each pixel.
+    pub modulation: Vec<Rgb>,
+    /// Both halves' light, divided, without outliers, each pixel.
+    pub halves: [Vec<Rgb>; 2],
+    /// Whether the caller's pixel was finite.
+    pub known: [Vec<bool>; 2],
+    /// The light's channels.
+    pub guides: [[Vec<f32>; 3]; 2],
+    /// Variance of one half's light, summed over the channels, smoothed.
+    pub variance: Vec<f32>,
+    /// The light's channels, in phases.
+    pub colours: [[Vec<f32>; 3]; 2],
+    /// 1 where a pixel is known, 0 elsewhere and in the margin, in phases.
+    pub masks: [Vec<f32>; 2],
+    /// The features in phases, or none.
+    pub features: Vec<Vec<f32>>,
+    /// Mean light of a pixel, divided; the sum of its channels.
+    pub scale: f32,
+    /// The share of the light that was cut.
+    pub removed: f64,
+}
+
+impl Prepared {
+    pub fn new(level: SimdLevel, noisy: &Noisy, settings: &Settings) -> Self {
+        let grid = Grid::new(noisy.width, noisy.height);
+        let features = features::filtered(level, noisy);
+        let modulation = modulation(noisy, features.as_deref());
+        let known = noisy.halves.map(|half| half.iter().map(|colour| colour.is_finite()).collect::<Vec<bool>>());
+        let divided = filled(noisy, &known).map(|half| {
+            half.into_par_iter().zip(&modulation).map(|(c, m)| Rgb::new(c.r / m.r, c.g / m.g, c.b / m.b)).collect()
+        });
+        let (halves, removed) = without_outliers(noisy.width, divided, &modulation, settings);
+        let (total, count) = (light(&halves[0], None) + light(&halves[1], None), 2.0 * modulation.len() as f64);
+        let variance = variance(noisy.width, &halves);
+        let guides = [0, 1].map(|half: usize| channels(&grid, &halves[half]));
+        let planes = features.map_or(Vec::new(), |features| {
+            let plane = |k: usize| grid.phases(&grid.pad(|i| features[i][k]));
+            (0..FEATURES).into_par_iter().map(plane).collect()
+        });
+        Self {
+            colours: [0, 1].map(|half: usize| [0, 1, 2].map(|k: usize| grid.phases(&guides[half][k]))),
+            masks: [0, 1].map(|half: usize| grid.phases(&grid.pad_zero(|i| f32::from(u8::from(known[half][i]))))),
+            variance: grid.pad(|i| variance[i]),
+            features: planes,
+            scale: (total / count) as f32,
+            grid,
+            modulation,
+            halves,
+            known,
+            guides,
+            removed,
+        }
+    }
+}
+
+/// The colours as planes with margins.
+fn channels(grid: &Grid, colours: &[Rgb]) -> [Vec<f32>; 3] {
+    [grid.pad(|i| colours[i].r), grid.pad(|i| colours[i].g), grid.pad(|i| colours[i].b)]
+}
+
+/// What a pixel's light is divided by: the albedo, and 1 for the part of the pixel where there is no surface. So what
+/// is left, the light that arrives, goes on smoothly from the surface to the sky behind it.
+fn modulation(noisy: &Noisy, features: Option<&[Feature]>) -> Vec<Rgb> {
+    let Some(features) = features.filter(|_| noisy.features.albedo.is_some()) else {
+        return vec![Rgb::WHITE; noisy.width * noisy.height];
+    };
+    let has_normals = noisy.features.normal.is_some();
+    let pixel = |feature: &Feature| {
+        let [r, g, b, x, y, z, _] = *feature;
+        let bare = if has_normals {
+            (1.0 - (x * x + y * y + z * z).sqrt()).max(0.0)
+        } else {
+            f32::from(u8::from(r.max(g).max(b) <= 0.0))
+        };
+        Rgb::new(r, g, b).map(|albedo| (albedo + bare).max(DARKEST))
+    };
+    features.par_iter().map(pixel).collect()
+}
+
+/// The halves, unknown pixels taken from the other half, or else from the mean of known neighbours.
+fn filled(noisy: &Noisy, known: &[Vec<bool>; 2]) -> [Vec<Rgb>; 2] {
+    [0, 1].map(|half: usize| {
+        let pixel = |i: usize| match (known[half][i], known[1 - half][i]) {
+            (true, _) => noisy.halves[half][i],
+            (_, true) => noisy.halves[1 - half][i],
+            _ => neighbours(noisy, known, i),
+        };
+        (0..known[half].len()).into_par_iter().map(pixel).collect()
+    })
+}
+
+/// The mean of what is known of both halves around pixel `i`, or black.
+fn neighbours(noisy: &Noisy, known: &[Vec<bool>; 2], i: usize) -> Rgb {
+    let (x, y) = (i % noisy.width, i / noisy.width);
+    let (mut sum, mut count) = (Rgb::BLACK, 0.0);
+    for row in y.saturating_sub(3)..noisy.height.min(y + 4) {
+        for column in x.saturating_sub(3)..noisy.width.min(x + 4) {
+            let at = row * noisy.width + column;
+            for half in 0..2 {
+                if known[half][at] {
+                    sum += noisy.halves[half][at];
+                    count += 1.0;
+                }
+            }
+        }
+    }
+    if count > 0.0 { sum / count } else { Rgb::BLACK }
+}
+
+/// The halves with outliers cut, if that is wanted, and the share of the light that went.
+fn without_outliers(
+    width: usize,
+    halves: [Vec<Rgb>; 2],
+    modulation: &[Rgb],
+    settings: &Settings,
+) -> ([Vec<Rgb>; 2], f64) {
+    if !settings.cut_outliers {
+        return (halves, 0.0);
+    }
+    let cut = outliers::cut(width, &halves);
+    let all = |halves: &[Vec<Rgb>; 2]| halves.iter().map(|half| light(half, Some(modulation))).sum::<f64>();
+    let (before, after) = (all(&halves), all(&cut));
+    (cut, if before > 0.0 { (1.0 - after / before).max(0.0) } else { 0.0 })
+}
+
+/// The sum of all channels of all pixels, multiplied as the pixels will be.
+fn light(colours: &[Rgb], modulation: Option<&[Rgb]>) -> f64 {
+    let sum = |c: Rgb| f64::from(c.r) + f64::from(c.g) + f64::from(c.b);
+    match modulation {
+        Some(modulation) => colours.iter().zip(modulation).map(|(c, m)| sum(*c * *m)).sum(),
+        None => colours.iter().map(|c| sum(*c)).sum(),
+    }
+}
+
+/// Variance of one half's pixels from the difference of both, summed over the channels.
+fn variance(width: usize, halves: &[Vec<Rgb>; 2]) -> Vec<f32> {
+    let pixel = |(a, b): (&Rgb, &Rgb)| {
+        let difference = *a - *b;
+        let square = difference * difference;
+        (square.r + square.g + square.b) * 0.5
+    };
+    let raw: Vec<f32> = halves[0].par_iter().zip(&halves[1]).map(pixel).collect();
+    blur::mean(width, &raw, VARIANCE_REACH)
+}
