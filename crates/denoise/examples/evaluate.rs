@@ -163,12 +163,7 @@ fn own(loaded: &Loaded, options: &Options) -> Result<(Vec<Rgb>, f64, f64), Failu
     Ok((denoised.pixels, denoised.removed, best))
 }
 
-fn foreign(
-    loaded: &Loaded,
-    input: &[Rgb],
-    options: &Options,
-    library: &Library,
-) -> Result<(Vec<Rgb>, f64), Failure> {
+fn foreign(loaded: &Loaded, input: &[Rgb], options: &Options, library: &Library) -> Result<(Vec<Rgb>, f64), Failure> {
     let albedo = mean(&loaded.albedo);
     let normal: Vec<Vec3> = loaded.normal[0].iter().zip(&loaded.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
     let (mut best, mut pixels) = (f64::INFINITY, Vec::new());
@@ -206,7 +201,8 @@ fn read(path: &Path) -> Result<Image, Failure> {
     if kind != "PF" || !scale.starts_with('-') || width == 0 {
         return Err(format!("{}: no colour PFM", path.display()).into());
     }
-    let numbers = lines.next().unwrap_or_default().chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let numbers =
+        lines.next().unwrap_or_default().chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let numbers: Vec<f32> = numbers.collect();
     let rows = numbers.chunks_exact(3 * width as usize).rev();
     let pixels = rows.flat_map(|row| row.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2]))).collect();

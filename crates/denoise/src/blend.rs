@@ -2,7 +2,7 @@
 //!
 //! With F₁, F₂ the filtered halves and I₁, I₂ the input's, (F₁ - I₂)(F₂ - I₁) is the square of the filter's bias in the mean, since all
 //! noise in it is independent, and (I₁ - I₂)² / 4 the variance of the input's mean. Both are noisy and therefore
-//! averaged over a neighbourhood.
+//! averaged over a neighbourhood, where no single pixel counts for more than some others together.
 
 use crate::blur;
 use crate::prepare::Prepared;
@@ -12,11 +12,15 @@ use juggler_math::Rgb;
 use rayon::prelude::*;
 
 /// The weight of a pixel's own colour beside what the windows say of it.
-const OWN: f32 = 1e-3;
+const OWN: f32 = 0.1;
 /// Pixels to each side that errors are the mean of.
 const ERROR_REACH: usize = 4;
 /// Bias, in parts of the input's variance, that passes for noise of the estimate.
 const DOUBT: f32 = 0.25;
+/// Bias, in parts of the input's variance, that a single pixel counts for at most among its neighbours.
+const MOST: f32 = 4.0;
+/// Bias likewise from which on a pixel is mixed by its own.
+const ALONE: f32 = 100.0;
 
 /// The picture.
 pub(crate) fn blend(prepared: &Prepared, filtered: &[Sums; 2]) -> Vec<Rgb> {
@@ -27,14 +31,15 @@ pub(crate) fn blend(prepared: &Prepared, filtered: &[Sums; 2]) -> Vec<Rgb> {
     let pairs: Vec<[f32; 2]> =
         (0..halves[0].len()).into_par_iter().map(|i| errors(prepared, [halves[0][i], halves[1][i]], i)).collect();
     let width = prepared.grid.width;
-    let [bias, noise] = [0, 1].map(|k: usize| {
-        blur::mean(width, &pairs.iter().map(|pair| pair[k]).collect::<Vec<_>>(), ERROR_REACH)
-    });
+    let noise: Vec<f32> = pairs.iter().map(|pair| pair[1]).collect();
+    let noise = blur::mean(width, &noise, ERROR_REACH);
+    let usual: Vec<f32> = pairs.iter().zip(&noise).map(|(pair, v)| pair[0].clamp(-MOST * v, MOST * v)).collect();
+    let usual = blur::mean(width, &usual, ERROR_REACH);
     let pixel = |i: usize| {
         let filter = (halves[0][i] + halves[1][i]) * 0.5;
         let input = (prepared.halves[0][i] + prepared.halves[1][i]) * 0.5;
         let known = prepared.known[0][i] || prepared.known[1][i];
-        let excess = bias[i] - DOUBT * noise[i];
+        let excess = (usual[i] - DOUBT * noise[i]).max(pairs[i][0] - ALONE * noise[i]);
         let share = if known && excess > 0.0 { excess / (excess + noise[i]) } else { 0.0 };
         let mixed = filter.lerp(input, share);
         let mixed = Rgb::new(above(mixed.r, input.r), above(mixed.g, input.g), above(mixed.b, input.b));

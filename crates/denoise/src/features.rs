@@ -5,7 +5,7 @@ use crate::grid::{Grid, LANES, MARGIN};
 use crate::weights::load;
 use crate::{Features, Noisy, SimdLevel, blur};
 use fearless_simd::prelude::*;
-use fearless_simd::{dispatch, f32x8};
+use fearless_simd::{dispatch, f32x16};
 use juggler_math::fun;
 use rayon::prelude::*;
 
@@ -90,8 +90,8 @@ impl Field {
     }
 
     #[inline(always)]
-    fn filter_block<S: Simd>(&self, simd: S, at: usize) -> [f32x8<S>; FEATURES] {
-        let zero = f32x8::splat(simd, 0.0);
+    fn filter_block<S: Simd>(&self, simd: S, at: usize) -> [f32x16<S>; FEATURES] {
+        let zero = f32x16::splat(simd, 0.0);
         let own = self.numbers(simd, at);
         let variance = load(simd, &self.variance, at);
         let (mut sums, mut weights) = (own, [zero + 1.0; 2]);
@@ -123,8 +123,8 @@ impl Field {
 
     /// Both halves' numbers of the pixels from `at` on.
     #[inline(always)]
-    fn numbers<S: Simd>(&self, simd: S, at: usize) -> [f32x8<S>; 2 * FEATURES] {
-        let mut numbers = [f32x8::splat(simd, 0.0); 2 * FEATURES];
+    fn numbers<S: Simd>(&self, simd: S, at: usize) -> [f32x16<S>; 2 * FEATURES] {
+        let mut numbers = [f32x16::splat(simd, 0.0); 2 * FEATURES];
         for k in 0..2 * FEATURES {
             numbers[k] = load(simd, &self.planes[k], at);
         }
@@ -134,13 +134,8 @@ impl Field {
 
 /// The squared distance of what is known of pixels, in the half whose numbers begin at `guide`.
 #[inline(always)]
-fn distance<S: Simd>(
-    simd: S,
-    a: &[f32x8<S>; 2 * FEATURES],
-    b: &[f32x8<S>; 2 * FEATURES],
-    guide: usize,
-) -> f32x8<S> {
-    let mut sum = f32x8::splat(simd, 0.0);
+fn distance<S: Simd>(simd: S, a: &[f32x16<S>; 2 * FEATURES], b: &[f32x16<S>; 2 * FEATURES], guide: usize) -> f32x16<S> {
+    let mut sum = f32x16::splat(simd, 0.0);
     for k in guide..guide + FEATURES {
         let difference = a[k] - b[k];
         sum = sum + difference * difference;
@@ -150,8 +145,8 @@ fn distance<S: Simd>(
 
 /// About e^-x for x >= 0, but 0 from 8 on; 1 for negative x.
 #[inline(always)]
-pub(crate) fn falling<S: Simd>(simd: S, x: f32x8<S>) -> f32x8<S> {
-    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+pub(crate) fn falling<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
     let base = (one - x * 0.125).max(zero).min(one);
     let square = base * base;
     let fourth = square * square;

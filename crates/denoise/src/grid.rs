@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// Pixels from one window's centre to the next, in both directions.
-pub(crate) const STEP: usize = 3;
+pub(crate) const STEP: usize = 2;
 /// Pixels that a window reaches to each side of its centre.
 pub(crate) const REACH: usize = 9;
 /// Pixels that a patch, the neighbourhood by which pixels are compared, reaches to each side.
@@ -14,8 +14,8 @@ pub(crate) const MARGIN: usize = 12;
 pub(crate) const SIDE: usize = 2 * REACH + 1;
 /// Pixels of a window.
 pub(crate) const OFFSETS: usize = SIDE * SIDE;
-/// Windows that are computed side by side.
-pub(crate) const LANES: usize = 8;
+/// Windows that are computed side by side; two halves where vectors are shorter.
+pub(crate) const LANES: usize = 16;
 /// Windows in a row of a tile.
 pub(crate) const TILE_COLUMNS: usize = 32;
 /// Rows of windows of a tile.

@@ -9,7 +9,7 @@
 //!    filtered by themselves (`features`), and the colour is divided by the albedo (`prepare`).
 //! 2. Non-local means of each half give weights for the other (`weights`: Rousselle, Knaus, Zwicker 2012; Rousselle,
 //!    Manzi, Zwicker 2013).
-//! 3. With these weights the colours around every third pixel are fitted by a linear function of place and features, which
+//! 3. With these weights the colours around every other pixel of every other row are fitted by a linear function of place and features, which
 //!    is then spread over all the pixels around it (`regression`: Bitterli et al. 2016, sections 4 and 5). Deviations: windows
 //!    on a grid, no choice among bandwidths, ridge instead of truncated singular values, features also in the weights.
 //! 4. The filtered halves and the unfiltered ones tell how wrong the filter is compared with the noise; by that the input is
@@ -64,12 +64,7 @@ pub struct SizeError {
 
 impl<'a> Noisy<'a> {
     /// `halves`: linear light, means of two disjoint halves of the samples. Colours that are not finite count as unknown.
-    pub fn new(
-        width: usize,
-        height: usize,
-        halves: [&'a [Rgb]; 2],
-        features: Features<'a>,
-    ) -> Result<Self, SizeError> {
+    pub fn new(width: usize, height: usize, halves: [&'a [Rgb]; 2], features: Features<'a>) -> Result<Self, SizeError> {
         let check = |what: &'static str, found: usize| match width.checked_mul(height) {
             Some(wanted) if wanted == found && wanted > 0 => Ok(()),
             _ => Err(SizeError { what, found, width, height }),
@@ -115,11 +110,7 @@ pub fn denoise(noisy: &Noisy, settings: &Settings) -> Vec<Rgb> {
 
 /// Like [`denoise`], but asks now and then (about 50 times a picture of 1280 × 720, from any thread) whether to stop; `None`
 /// when it did.
-pub fn denoise_unless(
-    noisy: &Noisy,
-    settings: &Settings,
-    cancelled: &(dyn Fn() -> bool + Sync),
-) -> Option<Denoised> {
+pub fn denoise_unless(noisy: &Noisy, settings: &Settings, cancelled: &(dyn Fn() -> bool + Sync)) -> Option<Denoised> {
     denoise_at(SimdLevel::new(), noisy, settings, cancelled)
 }
 

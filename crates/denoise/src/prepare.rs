@@ -8,8 +8,14 @@ use rayon::prelude::*;
 
 /// The smallest number that colours are divided by.
 const DARKEST: f32 = 0.05;
+/// Channels from here on count as unknown like infinite ones: their squares would be.
+const BRIGHTEST: f32 = 1e15;
 /// Pixels to each side that variances are the mean of.
 const VARIANCE_REACH: usize = 3;
+
+/// How many times as much as usual around it, in squares, a pixel's halves may differ until it counts less in windows:
+/// rare bright samples would outweigh all others.
+const TRUST: f32 = 50.0;
 
 /// Everything that the windows read. Planes have margins; those in phases are sorted by [`Grid::phases`].
 pub(crate) struct Prepared {
@@ -18,12 +24,16 @@ pub(crate) struct Prepared {
     pub modulation: Vec<Rgb>,
     /// Both halves' light, divided, without outliers, each pixel.
     pub halves: [Vec<Rgb>; 2],
-    /// Whether the caller's pixel was finite.
+    /// Whether the caller's pixel was a colour.
     pub known: [Vec<bool>; 2],
     /// The light's channels.
     pub guides: [[Vec<f32>; 3]; 2],
     /// Variance of one half's light, summed over the channels, smoothed.
     pub variance: Vec<f32>,
+    /// Variance of one half's light by the pixel's own difference alone, in phases.
+    pub single: Vec<f32>,
+    /// From which such variance on a pixel counts less in windows around this one, in phases.
+    pub usual: Vec<f32>,
     /// The light's channels, in phases.
     pub colours: [[Vec<f32>; 3]; 2],
     /// 1 where a pixel is known, 0 elsewhere and in the margin, in phases.
@@ -41,13 +51,18 @@ impl Prepared {
         let grid = Grid::new(noisy.width, noisy.height);
         let features = features::filtered(level, noisy);
         let modulation = modulation(noisy, features.as_deref());
-        let known = noisy.halves.map(|half| half.iter().map(|colour| colour.is_finite()).collect::<Vec<bool>>());
+        let known = noisy.halves.map(|half| half.iter().map(is_known).collect::<Vec<bool>>());
         let divided = filled(noisy, &known).map(|half| {
             half.into_par_iter().zip(&modulation).map(|(c, m)| Rgb::new(c.r / m.r, c.g / m.g, c.b / m.b)).collect()
         });
         let (halves, removed) = without_outliers(noisy.width, divided, &modulation, settings);
         let (total, count) = (light(&halves[0], None) + light(&halves[1], None), 2.0 * modulation.len() as f64);
-        let variance = variance(noisy.width, &halves);
+        let scale = (total / count) as f32;
+        let single = variance(&halves);
+        let usual = usual(noisy.width, &single);
+        let variance = blur::mean(noisy.width, &single, VARIANCE_REACH);
+        // Where there is no noise, no pixel is less sure than others.
+        let least = (scale * scale * 1e-7).max(1e-30);
         let guides = [0, 1].map(|half: usize| channels(&grid, &halves[half]));
         let planes = features.map_or(Vec::new(), |features| {
             let plane = |k: usize| grid.phases(&grid.pad(|i| features[i][k]));
@@ -57,8 +72,10 @@ impl Prepared {
             colours: [0, 1].map(|half: usize| [0, 1, 2].map(|k: usize| grid.phases(&guides[half][k]))),
             masks: [0, 1].map(|half: usize| grid.phases(&grid.pad_zero(|i| f32::from(u8::from(known[half][i]))))),
             variance: grid.pad(|i| variance[i]),
+            single: grid.phases(&grid.pad(|i| single[i] + least)),
+            usual: grid.phases(&grid.pad(|i| usual[i] * TRUST + least)),
             features: planes,
-            scale: (total / count) as f32,
+            scale,
             grid,
             modulation,
             halves,
@@ -67,6 +84,11 @@ impl Prepared {
             removed,
         }
     }
+}
+
+/// Whether a colour can be reckoned with.
+fn is_known(colour: &Rgb) -> bool {
+    colour.is_finite() && colour.map(f32::abs).max_channel() < BRIGHTEST
 }
 
 /// The colours as planes with margins.
@@ -149,12 +171,18 @@ fn light(colours: &[Rgb], modulation: Option<&[Rgb]>) -> f64 {
 }
 
 /// Variance of one half's pixels from the difference of both, summed over the channels.
-fn variance(width: usize, halves: &[Vec<Rgb>; 2]) -> Vec<f32> {
+fn variance(halves: &[Vec<Rgb>; 2]) -> Vec<f32> {
     let pixel = |(a, b): (&Rgb, &Rgb)| {
         let difference = *a - *b;
         let square = difference * difference;
         (square.r + square.g + square.b) * 0.5
     };
-    let raw: Vec<f32> = halves[0].par_iter().zip(&halves[1]).map(pixel).collect();
-    blur::mean(width, &raw, VARIANCE_REACH)
+    halves[0].par_iter().zip(&halves[1]).map(pixel).collect()
+}
+
+/// What is usual of numbers around each pixel: the mean of fourth roots, which a few large ones hardly change.
+fn usual(width: usize, numbers: &[f32]) -> Vec<f32> {
+    let roots: Vec<f32> = numbers.par_iter().map(|number| number.sqrt().sqrt()).collect();
+    let means = blur::mean(width, &roots, VARIANCE_REACH);
+    means.into_par_iter().map(|mean| (mean * mean) * (mean * mean)).collect()
 }

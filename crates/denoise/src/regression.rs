@@ -1,28 +1,28 @@
 //! The light around a window's centre as a linear function of place and features (Bitterli et al. 2016, sections 4 and 5.2): fitted
-//! by weighted least squares, then spread over the whole window. Eight windows side by side.
+//! by weighted least squares, then spread over the whole window. Sixteen windows side by side.
 
 use crate::features::{FEATURES, falling};
 use crate::grid::{LANES, MARGIN, OFFSETS, REACH, STEP, TILE_COLUMNS, offsets};
 use crate::prepare::Prepared;
 use crate::weights::{Weights, load};
-use fearless_simd::f32x8;
+use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 
 /// One, place, features.
 const MOST: usize = 3 + FEATURES;
 /// What is added to the variances of the numbers in a window: slopes along a number that varies less are not trusted.
-const RIDGE: [f32; MOST] = [0.0, 0.02, 0.02, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-4];
+const RIDGE: [f32; MOST] = [0.0, 4e-3, 4e-3, 2e-4, 2e-4, 2e-4, 2e-4, 2e-4, 2e-4, 2e-5];
 /// What the squares of the features' differences are multiplied by in weights.
-const LIKENESS: [f32; FEATURES] = [4.0, 4.0, 4.0, 4.0, 4.0, 4.0, 8.0];
+const LIKENESS: [f32; FEATURES] = [3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 6.4];
 
 /// Pixels in a row of what a tile adds to.
 pub(crate) const SUMS_STRIDE: usize = STEP * PHASE;
 /// Pixels of one class of columns in it.
-pub(crate) const PHASE: usize = TILE_COLUMNS + LANES;
+pub(crate) const PHASE: usize = TILE_COLUMNS + ((MARGIN + REACH) / STEP + 1).next_multiple_of(LANES);
 /// Red, green, blue, weight.
 pub(crate) const SUMS: usize = 4;
 
-/// A row of eight windows.
+/// A row of windows side by side.
 pub(crate) struct Windows<'a> {
     prepared: &'a Prepared,
     /// Where the first pixel of the first window is in planes in phases, but for the offset's part.
@@ -56,8 +56,8 @@ impl Steps {
 /// What least squares need of one half: the lower triangle of the matrix, and a right side for each channel.
 #[derive(Clone, Copy)]
 struct System<S: Simd> {
-    matrix: [[f32x8<S>; MOST]; MOST],
-    right: [[f32x8<S>; 3]; MOST],
+    matrix: [[f32x16<S>; MOST]; MOST],
+    right: [[f32x16<S>; 3]; MOST],
 }
 
 impl<'a> Windows<'a> {
@@ -80,11 +80,11 @@ impl<'a> Windows<'a> {
         weights: [&mut [[f32; LANES]]; 2],
         sums: &mut [Vec<f32>; 2 * SUMS],
     ) {
-        let zero = f32x8::splat(simd, 0.0);
+        let zero = f32x16::splat(simd, 0.0);
         let mut systems = [System { matrix: [[zero; MOST]; MOST], right: [[zero; 3]; MOST] }; 2];
         let [first, second] = weights;
         for (offset, place) in offsets().enumerate() {
-            let pair = [f32x8::from_slice(simd, &first[offset]), f32x8::from_slice(simd, &second[offset])];
+            let pair = [f32x16::from_slice(simd, &first[offset]), f32x16::from_slice(simd, &second[offset])];
             if !(pair[0] + pair[1]).simd_gt(zero).any_true() {
                 continue;
             }
@@ -102,7 +102,7 @@ impl<'a> Windows<'a> {
         let [one, other] = systems;
         let slopes = [one.solved::<N>(simd), other.solved::<N>(simd)];
         for (offset, place) in offsets().enumerate() {
-            let pair = [f32x8::from_slice(simd, &first[offset]), f32x8::from_slice(simd, &second[offset])];
+            let pair = [f32x16::from_slice(simd, &first[offset]), f32x16::from_slice(simd, &second[offset])];
             if (pair[0] + pair[1]).simd_gt(zero).any_true() {
                 let (numbers, _) = self.numbers::<S, N>(simd, offset, place);
                 self.spread::<S, N>(simd, offset, pair, &numbers, &slopes, sums);
@@ -110,26 +110,29 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// The numbers of the pixels at an offset, less those of the centres, and how alike the features are.
+    /// The numbers of the pixels at an offset, less those of the centres, and what these
+    /// pixels' weights are multiplied by: how alike their features are, and how sure they are compared with the centres'
+    /// surroundings.
     #[inline(always)]
     fn numbers<S: Simd, const N: usize>(
         &self,
         simd: S,
         offset: usize,
         (x, y): (isize, isize),
-    ) -> ([f32x8<S>; N], f32x8<S>) {
-        let mut numbers = [f32x8::splat(simd, 1.0); N];
-        numbers[1] = f32x8::splat(simd, x as f32 / REACH as f32);
-        numbers[2] = f32x8::splat(simd, y as f32 / REACH as f32);
+    ) -> ([f32x16<S>; N], f32x16<S>) {
+        let mut numbers = [f32x16::splat(simd, 1.0); N];
+        numbers[1] = f32x16::splat(simd, x as f32 / REACH as f32);
+        numbers[2] = f32x16::splat(simd, y as f32 / REACH as f32);
         let (at, centre) = (self.base + self.steps.planes[offset], self.base + self.steps.planes[OFFSETS / 2]);
-        let mut distance = f32x8::splat(simd, 0.0);
+        let mut distance = f32x16::splat(simd, 0.0);
         for k in 3..N {
             let plane = &self.prepared.features[k - 3];
             let difference = load(simd, plane, at) - load(simd, plane, centre);
             distance = distance + difference * difference * LIKENESS[k - 3];
             numbers[k] = difference;
         }
-        (numbers, falling(simd, distance))
+        let sure = load(simd, &self.prepared.usual, centre) / load(simd, &self.prepared.single, at);
+        (numbers, falling(simd, distance) * sure.min(f32x16::splat(simd, 1.0)))
     }
 
     /// Adds what the fitted functions say of the pixels at an offset.
@@ -138,9 +141,9 @@ impl<'a> Windows<'a> {
         &self,
         simd: S,
         offset: usize,
-        weights: [f32x8<S>; 2],
-        numbers: &[f32x8<S>; N],
-        slopes: &[[[f32x8<S>; 3]; N]; 2],
+        weights: [f32x16<S>; 2],
+        numbers: &[f32x16<S>; N],
+        slopes: &[[[f32x16<S>; 3]; N]; 2],
         sums: &mut [Vec<f32>; 2 * SUMS],
     ) {
         let at = self.target + self.steps.sums[offset];
@@ -157,16 +160,16 @@ impl<'a> Windows<'a> {
     }
 }
 
-/// Adds eight numbers from `at` on.
+/// Adds numbers from `at` on.
 #[inline(always)]
-fn add<S: Simd>(simd: S, sums: &mut [f32], at: usize, more: f32x8<S>) {
+fn add<S: Simd>(simd: S, sums: &mut [f32], at: usize, more: f32x16<S>) {
     let target = &mut sums[at..at + LANES];
-    (f32x8::from_slice(simd, target) + more).store_slice(target);
+    (f32x16::from_slice(simd, target) + more).store_slice(target);
 }
 
 impl<S: Simd> System<S> {
     #[inline(always)]
-    fn add<const N: usize>(&mut self, weight: f32x8<S>, numbers: &[f32x8<S>; N], colour: [f32x8<S>; 3]) {
+    fn add<const N: usize>(&mut self, weight: f32x16<S>, numbers: &[f32x16<S>; N], colour: [f32x16<S>; 3]) {
         for i in 0..N {
             let weighted = weight * numbers[i];
             for j in 0..=i {
@@ -180,8 +183,8 @@ impl<S: Simd> System<S> {
 
     /// The constant and the slopes: Cholesky's method without roots, after a ridge was added.
     #[inline(always)]
-    fn solved<const N: usize>(mut self, simd: S) -> [[f32x8<S>; 3]; N] {
-        let one = f32x8::splat(simd, 1.0);
+    fn solved<const N: usize>(mut self, simd: S) -> [[f32x16<S>; 3]; N] {
+        let one = f32x16::splat(simd, 1.0);
         let total = self.matrix[0][0];
         let mut inverse = [one; N];
         for i in 0..N {

@@ -25,8 +25,7 @@ impl Walls {
         let left = |i: usize| i % width < width / 2;
         let all = || 0..width * height;
         let truth: Vec<Rgb> = all().map(|i| if left(i) { LEFT * 2.0 } else { RIGHT * 0.5 }).collect();
-        let mut half =
-            || truth.iter().map(|c| *c * (1.0 + noise * random.range(-1.0, 1.0))).collect::<Vec<Rgb>>();
+        let mut half = || truth.iter().map(|c| *c * (1.0 + noise * random.range(-1.0, 1.0))).collect::<Vec<Rgb>>();
         Self {
             halves: [half(), half()],
             albedo: all().map(|i| if left(i) { LEFT } else { RIGHT }).collect(),
@@ -71,7 +70,7 @@ fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
 
 #[test]
 fn a_constant_picture_stays_as_it_is() {
-    for colour in [Rgb::BLACK, Rgb::new(0.3, 40.0, 1e-3), Rgb::splat(1e6)] {
+    for colour in [Rgb::BLACK, Rgb::new(0.3, 40.0, 1e-3), Rgb::splat(1e14)] {
         let pixels = vec![colour; 50 * 31];
         let noisy = Noisy::new(50, 31, [&pixels, &pixels], Features::default()).unwrap();
         for found in denoise(&noisy, &Settings::default()) {
@@ -112,12 +111,23 @@ fn noise_of_flat_walls_falls_to_a_fiftieth_and_the_edge_stays() {
 #[test]
 fn without_features_noise_falls_too() {
     let walls = Walls::new(96, 64, 0.6);
-    let pixels = denoise(&walls.noisy(Features::default()), &Settings::default());
-    let (before, after) = (walls.error(&walls.input()), walls.error(&pixels));
-    assert!(after < before / 15.0, "{before} {after}");
+    // Away from the edge, which nothing but the colour tells of now.
+    let flat = |pixels: &[Rgb]| {
+        let ratio = |i: usize| pixels[i].r / walls.truth[i].r - 1.0;
+        let inner: Vec<f32> = (0..pixels.len()).filter(|i| (i % 96).abs_diff(48) > 4).map(ratio).collect();
+        inner.iter().map(|r| r * r).sum::<f32>() / inner.len() as f32
+    };
+    let (before, bare) = (flat(&walls.input()), denoise(&walls.noisy(Features::default()), &Settings::default()));
+    assert!(flat(&bare) < before / 30.0, "{before} {}", flat(&bare));
     let features = Features { albedo: walls.features().albedo, ..Features::default() };
-    let after = walls.error(&denoise(&walls.noisy(features), &Settings::default()));
-    assert!(after < before / 20.0, "{before} {after}");
+    let colours = denoise(&walls.noisy(features), &Settings::default());
+    assert!(flat(&colours) < before / 30.0, "{before} {}", flat(&colours));
+    for column in [46, 47, 48, 49] {
+        let mean = (0..64).map(|y| bare[y * 96 + column].r).sum::<f32>() / 64.0;
+        // Patches of windows on a grid hardly ever lie to a sharp edge exactly as a pixel's own does.
+        let bound = if column == 46 || column == 49 { 0.05 } else { 0.4 };
+        assert!((mean - walls.truth[column].r).abs() < bound, "column {column}: {mean}");
+    }
 }
 
 #[test]
@@ -143,7 +153,7 @@ fn pictures_of_any_size_pass() {
 #[test]
 fn what_is_no_number_is_filled_in_and_does_not_spread() {
     let mut walls = Walls::new(90, 60, 0.5);
-    let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+    let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
     for (k, number) in strange.into_iter().enumerate() {
         let at = 30 * 90 + 10 + 3 * k;
         walls.halves[0][at] = Rgb::new(0.5, number, 0.5);

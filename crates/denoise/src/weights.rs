@@ -7,7 +7,7 @@
 use crate::features::falling;
 use crate::grid::{LANES, MARGIN, OFFSETS, PATCH, STEP, TILE_COLUMNS, TILE_ROWS, Tile, offsets};
 use crate::prepare::Prepared;
-use fearless_simd::f32x8;
+use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 
 /// Rows of pixels that the patches of a tile's centres cover.
@@ -16,6 +16,10 @@ const ROWS: usize = (TILE_ROWS - 1) * STEP + 2 * PATCH + 1;
 const COLUMNS: usize = ((TILE_COLUMNS - 1) * STEP + 2 * PATCH + 1).next_multiple_of(LANES);
 /// How far, in standard deviations of the noise, alike colours may be apart.
 const BANDWIDTH: f32 = 0.6;
+
+/// What patches of 3 × 3 pixels and single pixels count: where no other large patch is alike, beside bright edges, they decide.
+const SMALL: f32 = 0.1;
+const SINGLE: f32 = 0.02;
 
 /// For each row of windows, each block of lanes in it and each offset: the weights of the lanes.
 pub(crate) type Weights = Vec<[f32; LANES]>;
@@ -51,7 +55,8 @@ impl<'a> Guide<'a> {
         let blocks = TILE_COLUMNS / LANES;
         let mut weights = vec![[0.0; LANES]; tile.rows.len() * blocks * OFFSETS];
         let mut distances = vec![[0.0; COLUMNS]; ROWS];
-        let first = (MARGIN + tile.rows.start * STEP - PATCH) * self.stride + MARGIN + tile.columns.start * STEP - PATCH;
+        let first =
+            (MARGIN + tile.rows.start * STEP - PATCH) * self.stride + MARGIN + tile.columns.start * STEP - PATCH;
         let rows = (tile.rows.len() - 1) * STEP + 2 * PATCH + 1;
         for (offset, (x, y)) in offsets().enumerate() {
             let shift = y * self.stride as isize + x;
@@ -59,11 +64,15 @@ impl<'a> Guide<'a> {
                 self.distances(simd, first + row * self.stride, shift, line);
             }
             for row in 0..tile.rows.len() {
-                let sums = patches(simd, &distances[row * STEP..]);
-                for (block, sums) in sums.iter().enumerate() {
-                    let mean = load(simd, sums, 0) * (1.0 / ((2 * PATCH + 1) * (2 * PATCH + 1)) as f32);
+                let around = &distances[row * STEP..];
+                let large = patches(simd, around, PATCH);
+                let small = patches(simd, around, 1);
+                let single = patches(simd, around, 0);
+                for block in 0..blocks {
                     let weight = &mut weights[(row * blocks + block) * OFFSETS + offset];
-                    falling(simd, mean).store_slice(weight);
+                    let lesser = by_patch(simd, &small[block], 1) * SMALL;
+                    let least = by_patch(simd, &single[block], 0) * SINGLE;
+                    by_patch(simd, &large[block], PATCH).max(lesser).max(least).store_slice(weight);
                     let there = tile.columns.len().saturating_sub(block * LANES).min(LANES);
                     weight[there..].fill(0.0);
                 }
@@ -93,35 +102,40 @@ impl<'a> Guide<'a> {
     }
 }
 
-/// Eight numbers from `at` on.
+/// Numbers from `at` on.
 #[inline(always)]
-pub(crate) fn load<S: Simd>(simd: S, numbers: &[f32], at: usize) -> f32x8<S> {
-    f32x8::from_slice(simd, &numbers[at..at + LANES])
+pub(crate) fn load<S: Simd>(simd: S, numbers: &[f32], at: usize) -> f32x16<S> {
+    f32x16::from_slice(simd, &numbers[at..at + LANES])
 }
 
-/// Sums over the patches of a row of windows.
+/// Sums over the patches of `radius` around a row of windows' centres.
 // No closures and no folds: they are compiled without the vector unit's instructions and cost several times as much.
 #[inline(always)]
-fn patches<S: Simd>(simd: S, rows: &[[f32; COLUMNS]]) -> [[f32; LANES]; TILE_COLUMNS / LANES] {
-    let mut down = [0.0; COLUMNS + LANES];
+fn patches<S: Simd>(simd: S, rows: &[[f32; COLUMNS]], radius: usize) -> [[f32; LANES]; TILE_COLUMNS / LANES] {
+    let (mut down, mut across) = ([0.0; COLUMNS + LANES], [0.0; COLUMNS]);
     for at in (0..COLUMNS).step_by(LANES) {
-        let mut sum = load(simd, &rows[0], at);
-        for row in &rows[1..=2 * PATCH] {
+        let mut sum = load(simd, &rows[PATCH - radius], at);
+        for row in &rows[PATCH - radius + 1..=PATCH + radius] {
             sum = sum + load(simd, row, at);
         }
         sum.store_slice(&mut down[at..at + LANES]);
     }
-    let mut across = [0.0; COLUMNS];
     for at in (0..COLUMNS).step_by(LANES) {
         let mut sum = load(simd, &down, at);
-        for shift in 1..=2 * PATCH {
+        for shift in 1..=2 * radius {
             sum = sum + load(simd, &down, at + shift);
         }
         sum.store_slice(&mut across[at..at + LANES]);
     }
     let mut sums = [[0.0; LANES]; TILE_COLUMNS / LANES];
     for (window, sum) in sums.as_flattened_mut().iter_mut().enumerate() {
-        *sum = across[window * STEP];
+        *sum = across[window * STEP + PATCH - radius];
     }
     sums
+}
+
+/// Weights by patches of `radius`.
+#[inline(always)]
+fn by_patch<S: Simd>(simd: S, sums: &[f32; LANES], radius: usize) -> f32x16<S> {
+    falling(simd, load(simd, sums, 0) * (1.0 / ((2 * radius + 1) * (2 * radius + 1)) as f32))
 }

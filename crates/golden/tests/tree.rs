@@ -8,8 +8,7 @@ use std::process::Command;
 const MAX_LINES: usize = 400;
 
 /// The only files with `unsafe` in them, below `crates`.
-const UNSAFE: &[&str] =
-    &["bvh/benches/embree/ffi.rs", "bvh/src/lanes.rs", "bvh/src/pages.rs", "oidn/src/ffi.rs"];
+const UNSAFE: &[&str] = &["bvh/benches/embree/ffi.rs", "bvh/src/lanes.rs", "bvh/src/pages.rs", "oidn/src/ffi.rs"];
 
 /// What `cargo run` without further words runs: the README's first command.
 const PROGRAM: [&str; 2] = ["juggler-cli", "juggler"];

@@ -38,8 +38,7 @@ pub(crate) struct Api {
 }
 
 /// `oidnSetSharedFilterImage`: filter, name, pixels, format, width, height, offset, bytes to the next pixel and row (0: closely).
-type SetImage =
-    unsafe extern "C" fn(Handle, *const c_char, *mut c_void, c_int, usize, usize, usize, usize, usize);
+type SetImage = unsafe extern "C" fn(Handle, *const c_char, *mut c_void, c_int, usize, usize, usize, usize, usize);
 
 impl Api {
     /// Finds all functions, or says which one is missing.
@@ -128,7 +127,8 @@ impl Device<'_> {
 
     /// Runs the filter for path traced pictures of high range on `images`.
     pub fn filter(&self, images: &[Image], width: usize, height: usize) -> Result<Vec<f32>, Error> {
-        let Some(length) = images.first().filter(|_| images.iter().all(|i| (i.width, i.height) == (width, height))) else {
+        let Some(length) = images.first().filter(|_| images.iter().all(|i| (i.width, i.height) == (width, height)))
+        else {
             return Err(Error::Failed("pictures of several sizes".to_owned()));
         };
         let mut output = vec![0.0_f32; length.numbers.len()];

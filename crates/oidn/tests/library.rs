@@ -9,7 +9,9 @@ use std::path::Path;
 /// The library, if the environment says where it is.
 fn library() -> Option<Library> {
     let Some(path) = std::env::var_os("JUGGLER_OIDN") else {
-        eprintln!("SKIPPED: JUGGLER_OIDN does not say where Open Image Denoise is; docs/denoising.md says where to get it");
+        eprintln!(
+            "SKIPPED: JUGGLER_OIDN does not say where Open Image Denoise is; docs/denoising.md says where to get it"
+        );
         return None;
     };
     Some(Library::open(Some(Path::new(&path))).unwrap())
