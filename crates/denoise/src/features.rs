@@ -1,6 +1,11 @@
 //! The features as numbers, filtered by themselves: non-local means over single pixels, weights of each half for the
 //! other. Noise in them, at edges and out of focus, would pass into the picture otherwise.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "indices as in the formulas; iterators and closures lose the vector unit"
+)]
+
 use crate::grid::{Grid, LANES, MARGIN};
 use crate::weights::load;
 use crate::{Features, Noisy, SimdLevel, blur};
@@ -106,9 +111,9 @@ impl Field {
                     for half in 0..2 {
                         let guide = (1 - half) * FEATURES;
                         let weight = falling(simd, (distance(simd, &own, &numbers, guide) - noise) / scale);
-                        weights[half] = weights[half] + weight;
+                        weights[half] += weight;
                         for k in half * FEATURES..(half + 1) * FEATURES {
-                            sums[k] = sums[k] + weight * numbers[k];
+                            sums[k] += weight * numbers[k];
                         }
                     }
                 }
@@ -138,7 +143,7 @@ fn distance<S: Simd>(simd: S, a: &[f32x16<S>; 2 * FEATURES], b: &[f32x16<S>; 2 *
     let mut sum = f32x16::splat(simd, 0.0);
     for k in guide..guide + FEATURES {
         let difference = a[k] - b[k];
-        sum = sum + difference * difference;
+        sum += difference * difference;
     }
     sum
 }

@@ -134,9 +134,9 @@ fn neighbours(noisy: &Noisy, known: &[Vec<bool>; 2], i: usize) -> Rgb {
     for row in y.saturating_sub(3)..noisy.height.min(y + 4) {
         for column in x.saturating_sub(3)..noisy.width.min(x + 4) {
             let at = row * noisy.width + column;
-            for half in 0..2 {
-                if known[half][at] {
-                    sum += noisy.halves[half][at];
+            for (half, known) in noisy.halves.iter().zip(known) {
+                if known[at] {
+                    sum += half[at];
                     count += 1.0;
                 }
             }

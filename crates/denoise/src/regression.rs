@@ -1,6 +1,11 @@
 //! The light around a window's centre as a linear function of place and features (Bitterli et al. 2016, sections 4 and 5.2): fitted
 //! by weighted least squares, then spread over the whole window. Sixteen windows side by side.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "indices as in the formulas; iterators and closures lose the vector unit"
+)]
+
 use crate::features::{FEATURES, falling};
 use crate::grid::{LANES, MARGIN, OFFSETS, REACH, STEP, TILE_COLUMNS, offsets};
 use crate::prepare::Prepared;
@@ -128,7 +133,7 @@ impl<'a> Windows<'a> {
         for k in 3..N {
             let plane = &self.prepared.features[k - 3];
             let difference = load(simd, plane, at) - load(simd, plane, centre);
-            distance = distance + difference * difference * LIKENESS[k - 3];
+            distance += difference * difference * LIKENESS[k - 3];
             numbers[k] = difference;
         }
         let sure = load(simd, &self.prepared.usual, centre) / load(simd, &self.prepared.single, at);
@@ -151,7 +156,7 @@ impl<'a> Windows<'a> {
             for channel in 0..3 {
                 let mut value = slopes[half][0][channel];
                 for k in 1..N {
-                    value = value + slopes[half][k][channel] * numbers[k];
+                    value += slopes[half][k][channel] * numbers[k];
                 }
                 add(simd, &mut sums[half * SUMS + channel], at, value * weights[half]);
             }
@@ -173,10 +178,10 @@ impl<S: Simd> System<S> {
         for i in 0..N {
             let weighted = weight * numbers[i];
             for j in 0..=i {
-                self.matrix[i][j] = self.matrix[i][j] + weighted * numbers[j];
+                self.matrix[i][j] += weighted * numbers[j];
             }
             for channel in 0..3 {
-                self.right[i][channel] = self.right[i][channel] + weighted * colour[channel];
+                self.right[i][channel] += weighted * colour[channel];
             }
         }
     }
@@ -192,15 +197,15 @@ impl<S: Simd> System<S> {
             for j in 0..i {
                 for k in 0..j {
                     // The rows above were divided already, this one still has the products.
-                    self.matrix[i][j] = self.matrix[i][j] - self.matrix[i][k] * self.matrix[j][k];
+                    self.matrix[i][j] -= self.matrix[i][k] * self.matrix[j][k];
                 }
             }
             for j in 0..i {
                 let product = self.matrix[i][j];
                 self.matrix[i][j] = product * inverse[j];
-                self.matrix[i][i] = self.matrix[i][i] - product * self.matrix[i][j];
+                self.matrix[i][i] -= product * self.matrix[i][j];
                 for channel in 0..3 {
-                    self.right[i][channel] = self.right[i][channel] - self.matrix[i][j] * self.right[j][channel];
+                    self.right[i][channel] -= self.matrix[i][j] * self.right[j][channel];
                 }
             }
             inverse[i] = one / self.matrix[i][i].max(total * 1e-7 + 1e-20);
@@ -210,7 +215,7 @@ impl<S: Simd> System<S> {
             for channel in 0..3 {
                 let mut value = self.right[i][channel] * inverse[i];
                 for j in i + 1..N {
-                    value = value - self.matrix[j][i] * slopes[j][channel];
+                    value -= self.matrix[j][i] * slopes[j][channel];
                 }
                 slopes[i][channel] = value;
             }

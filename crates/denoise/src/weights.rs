@@ -116,14 +116,14 @@ fn patches<S: Simd>(simd: S, rows: &[[f32; COLUMNS]], radius: usize) -> [[f32; L
     for at in (0..COLUMNS).step_by(LANES) {
         let mut sum = load(simd, &rows[PATCH - radius], at);
         for row in &rows[PATCH - radius + 1..=PATCH + radius] {
-            sum = sum + load(simd, row, at);
+            sum += load(simd, row, at);
         }
         sum.store_slice(&mut down[at..at + LANES]);
     }
     for at in (0..COLUMNS).step_by(LANES) {
         let mut sum = load(simd, &down, at);
         for shift in 1..=2 * radius {
-            sum = sum + load(simd, &down, at + shift);
+            sum += load(simd, &down, at + shift);
         }
         sum.store_slice(&mut across[at..at + LANES]);
     }
