@@ -113,7 +113,7 @@ fn row(
     options: &Options,
     library: Option<&Library>,
 ) -> Result<Option<f64>, Failure> {
-    if !folder.join(format!("path_{samples}_1.pfm")).exists() {
+    if !folder.join(format!("depth_{samples}_2.pfm")).exists() {
         return Ok(None);
     }
     let loaded = load(folder, samples)?;

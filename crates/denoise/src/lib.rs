@@ -22,6 +22,7 @@ mod grid;
 mod outliers;
 mod prepare;
 mod regression;
+mod strips;
 mod tile;
 mod weights;
 
@@ -31,6 +32,7 @@ mod tests;
 pub use fearless_simd::Level as SimdLevel;
 
 use juggler_math::{Rgb, Vec3};
+use std::ops::Range;
 
 /// Pictures of what is seen in each pixel, two halves each like the colour's; all optional.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,6 +76,19 @@ impl<'a> Noisy<'a> {
         features.normal.iter().flatten().try_for_each(|half| check("normal", half.len()))?;
         features.depth.iter().flatten().try_for_each(|half| check("depth", half.len()))?;
         Ok(Self { width, height, halves, features })
+    }
+
+    /// Some of the picture's rows.
+    fn rows(&self, rows: Range<usize>) -> Self {
+        let range = rows.start * self.width..rows.end * self.width;
+        let Features { albedo, normal, depth } = self.features;
+        let features = Features {
+            albedo: albedo.map(|halves| halves.map(|half| &half[range.clone()])),
+            normal: normal.map(|halves| halves.map(|half| &half[range.clone()])),
+            depth: depth.map(|halves| halves.map(|half| &half[range.clone()])),
+        };
+        let halves = self.halves.map(|half| &half[range.clone()]);
+        Self { width: self.width, height: rows.len(), halves, features }
     }
 }
 
@@ -121,8 +136,5 @@ pub fn denoise_at(
     settings: &Settings,
     cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Option<Denoised> {
-    let prepared = prepare::Prepared::new(level, noisy, settings);
-    let filtered = tile::filter(level, &prepared, settings, cancelled)?;
-    let pixels = blend::blend(&prepared, &filtered);
-    Some(Denoised { pixels, removed: prepared.removed })
+    strips::denoise(level, noisy, settings, cancelled, strips::rows(noisy.width))
 }

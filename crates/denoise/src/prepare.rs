@@ -5,6 +5,7 @@ use crate::grid::Grid;
 use crate::{Noisy, Settings, SimdLevel, blur, outliers};
 use juggler_math::Rgb;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The smallest number that colours are divided by.
 const DARKEST: f32 = 0.05;
@@ -42,12 +43,13 @@ pub(crate) struct Prepared {
     pub features: Vec<Vec<f32>>,
     /// Mean light of a pixel, divided; the sum of its channels.
     pub scale: f32,
-    /// The share of the light that was cut.
-    pub removed: f64,
+    /// The caller's pixels' light before and after outliers were cut, the sum of all channels.
+    pub light: [f64; 2],
 }
 
 impl Prepared {
-    pub fn new(level: SimdLevel, noisy: &Noisy, settings: &Settings) -> Self {
+    /// `own`: the pixels whose light is counted.
+    pub fn new(level: SimdLevel, noisy: &Noisy, settings: &Settings, own: Range<usize>) -> Self {
         let grid = Grid::new(noisy.width, noisy.height);
         let features = features::filtered(level, noisy);
         let modulation = modulation(noisy, features.as_deref());
@@ -55,9 +57,10 @@ impl Prepared {
         let divided = filled(noisy, &known).map(|half| {
             half.into_par_iter().zip(&modulation).map(|(c, m)| Rgb::new(c.r / m.r, c.g / m.g, c.b / m.b)).collect()
         });
-        let (halves, removed) = without_outliers(noisy.width, divided, &modulation, settings);
-        let (total, count) = (light(&halves[0], None) + light(&halves[1], None), 2.0 * modulation.len() as f64);
-        let scale = (total / count) as f32;
+        let before = light(&divided, &modulation, own.clone());
+        let halves = if settings.cut_outliers { outliers::cut(noisy.width, &divided) } else { divided };
+        let light = [before, light(&halves, &modulation, own)];
+        let scale = scale(&halves);
         let single = variance(&halves);
         let usual = usual(noisy.width, &single);
         let variance = blur::mean(noisy.width, &single, VARIANCE_REACH);
@@ -81,7 +84,7 @@ impl Prepared {
             halves,
             known,
             guides,
-            removed,
+            light,
         }
     }
 }
@@ -145,29 +148,20 @@ fn neighbours(noisy: &Noisy, known: &[Vec<bool>; 2], i: usize) -> Rgb {
     if count > 0.0 { sum / count } else { Rgb::BLACK }
 }
 
-/// The halves with outliers cut, if that is wanted, and the share of the light that went.
-fn without_outliers(
-    width: usize,
-    halves: [Vec<Rgb>; 2],
-    modulation: &[Rgb],
-    settings: &Settings,
-) -> ([Vec<Rgb>; 2], f64) {
-    if !settings.cut_outliers {
-        return (halves, 0.0);
-    }
-    let cut = outliers::cut(width, &halves);
-    let all = |halves: &[Vec<Rgb>; 2]| halves.iter().map(|half| light(half, Some(modulation))).sum::<f64>();
-    let (before, after) = (all(&halves), all(&cut));
-    (cut, if before > 0.0 { (1.0 - after / before).max(0.0) } else { 0.0 })
+/// The sum of all channels of pixels, multiplied as they will be.
+fn light(halves: &[Vec<Rgb>; 2], modulation: &[Rgb], own: Range<usize>) -> f64 {
+    let pixel = |(c, m): (&Rgb, &Rgb)| sum(*c * *m);
+    halves.iter().map(|half| half[own.clone()].iter().zip(&modulation[own.clone()]).map(pixel).sum::<f64>()).sum()
 }
 
-/// The sum of all channels of all pixels, multiplied as the pixels will be.
-fn light(colours: &[Rgb], modulation: Option<&[Rgb]>) -> f64 {
-    let sum = |c: Rgb| f64::from(c.r) + f64::from(c.g) + f64::from(c.b);
-    match modulation {
-        Some(modulation) => colours.iter().zip(modulation).map(|(c, m)| sum(*c * *m)).sum(),
-        None => colours.iter().map(|c| sum(*c)).sum(),
-    }
+/// The mean of the sum of the channels.
+fn scale(halves: &[Vec<Rgb>; 2]) -> f32 {
+    let total: f64 = halves.iter().flatten().map(|colour| sum(*colour)).sum();
+    (total / (2 * halves[0].len()) as f64) as f32
+}
+
+fn sum(colour: Rgb) -> f64 {
+    f64::from(colour.r) + f64::from(colour.g) + f64::from(colour.b)
 }
 
 /// Variance of one half's pixels from the difference of both, summed over the channels.

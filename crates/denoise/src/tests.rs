@@ -1,6 +1,6 @@
 //! The whole filter, on pictures whose truth is known.
 
-use crate::{Denoised, Features, Noisy, Settings, SimdLevel, denoise, denoise_at, denoise_unless};
+use crate::{Denoised, Features, Noisy, Settings, SimdLevel, denoise, denoise_at, denoise_unless, strips};
 use juggler_math::testing::Random;
 use juggler_math::{Rgb, Vec3};
 
@@ -189,6 +189,19 @@ fn the_same_bits_on_any_threads_and_vector_units() {
     for level in levels.into_iter().flatten() {
         let found = denoise_at(level, &walls.noisy(walls.features()), &Settings::default(), &|| false).unwrap();
         assert!(bits(&found.pixels) == wanted, "{level:?}");
+    }
+}
+
+#[test]
+fn strips_do_not_show() {
+    let walls = Walls::new(50, 130, 0.8);
+    let (noisy, settings) = (walls.noisy(walls.features()), Settings::default());
+    let run = |rows: usize| strips::denoise(SimdLevel::new(), &noisy, &settings, &|| false, rows).unwrap();
+    let (whole, strips) = (run(200), run(20));
+    assert_eq!(strips.pixels.len(), whole.pixels.len());
+    assert!((strips.removed - whole.removed).abs() < 1e-9);
+    for (i, (a, b)) in strips.pixels.iter().zip(&whole.pixels).enumerate() {
+        assert!((*a - *b).map(f32::abs).max_channel() < 1e-4, "row {}: {a:?} {b:?}", i / 50);
     }
 }
 
