@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// Numbers of a pixel: albedo, normal, logarithm of depth.
 pub(crate) const FEATURES: usize = 7;
 /// Pixels to each side that a feature is filtered over.
-const REACH: isize = 3;
+const REACH: isize = 5;
 /// The square of a difference that is none.
 const TOLERANCE: f32 = 1e-4;
 
