@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// Crates whose numbers decide pixels.
-const CRATES: [&str; 6] = ["math", "bvh", "tracer", "scene", "film", "imaging"];
+const CRATES: [&str; 7] = ["math", "bvh", "tracer", "scene", "film", "imaging", "denoise"];
 
 /// What the standard library takes from the platform, or leaves open; `juggler_math::fun` has all of it.
 const PLATFORM: [&str; 22] = [

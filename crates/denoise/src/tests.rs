@@ -1,0 +1,242 @@
+//! The whole filter, on pictures whose truth is known.
+
+use crate::{Denoised, Features, Noisy, Settings, SimdLevel, denoise, denoise_at, denoise_unless, strips};
+use juggler_math::testing::Random;
+use juggler_math::{Rgb, Vec3};
+
+/// A picture of two walls that meet at the middle, with the truth.
+struct Walls {
+    width: usize,
+    height: usize,
+    truth: Vec<Rgb>,
+    halves: [Vec<Rgb>; 2],
+    albedo: Vec<Rgb>,
+    normal: Vec<Vec3>,
+    depth: Vec<f32>,
+}
+
+const LEFT: Rgb = Rgb::new(0.8, 0.2, 0.1);
+const RIGHT: Rgb = Rgb::new(0.1, 0.3, 0.6);
+
+impl Walls {
+    /// Light of 2 on the left wall and of 0.5 on the right one; noise, even in ± `noise` times the light, in each half.
+    fn new(width: usize, height: usize, noise: f32) -> Self {
+        let mut random = Random::new(7);
+        let left = |i: usize| i % width < width / 2;
+        let all = || 0..width * height;
+        let truth: Vec<Rgb> = all().map(|i| if left(i) { LEFT * 2.0 } else { RIGHT * 0.5 }).collect();
+        let mut half = || truth.iter().map(|c| *c * (1.0 + noise * random.range(-1.0, 1.0))).collect::<Vec<Rgb>>();
+        Self {
+            halves: [half(), half()],
+            albedo: all().map(|i| if left(i) { LEFT } else { RIGHT }).collect(),
+            normal: all().map(|i| if left(i) { Vec3::X } else { Vec3::Z }).collect(),
+            depth: all().map(|i| 2.0 + (i / width) as f32 * 0.01).collect(),
+            width,
+            height,
+            truth,
+        }
+    }
+
+    fn features(&self) -> Features<'_> {
+        Features {
+            albedo: Some([&self.albedo, &self.albedo]),
+            normal: Some([&self.normal, &self.normal]),
+            depth: Some([&self.depth, &self.depth]),
+        }
+    }
+
+    fn noisy<'a>(&'a self, features: Features<'a>) -> Noisy<'a> {
+        Noisy::new(self.width, self.height, [&self.halves[0], &self.halves[1]], features).unwrap()
+    }
+
+    fn denoised(&self) -> Vec<Rgb> {
+        denoise(&self.noisy(self.features()), &Settings::default())
+    }
+
+    fn input(&self) -> Vec<Rgb> {
+        self.halves[0].iter().zip(&self.halves[1]).map(|(a, b)| (*a + *b) * 0.5).collect()
+    }
+
+    /// Mean squared relative error.
+    fn error(&self, pixels: &[Rgb]) -> f32 {
+        let pixel = |(c, t): (&Rgb, &Rgb)| ((c.r - t.r) / t.r) * ((c.r - t.r) / t.r);
+        pixels.iter().zip(&self.truth).map(pixel).sum::<f32>() / pixels.len() as f32
+    }
+}
+
+fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
+    pixels.iter().map(|c| c.to_array().map(f32::to_bits)).collect()
+}
+
+#[test]
+fn a_constant_picture_stays_as_it_is() {
+    for colour in [Rgb::BLACK, Rgb::new(0.3, 40.0, 1e-3), Rgb::splat(1e14)] {
+        let pixels = vec![colour; 50 * 31];
+        let noisy = Noisy::new(50, 31, [&pixels, &pixels], Features::default()).unwrap();
+        for found in denoise(&noisy, &Settings::default()) {
+            for (f, c) in found.to_array().into_iter().zip(colour.to_array()) {
+                assert!((f - c).abs() <= 2e-6 * c.max(colour.max_channel() * 0.1), "{f} {c}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_no_noise_stays_as_it_is() {
+    let mut random = Random::new(3);
+    let pixels: Vec<Rgb> = (0..70 * 41).map(|_| random.rgb() * 5.0).collect();
+    let walls = Walls { halves: [pixels.clone(), pixels.clone()], ..Walls::new(70, 41, 0.0) };
+    for features in [Features::default(), walls.features()] {
+        for (found, wanted) in denoise(&walls.noisy(features), &Settings::default()).iter().zip(&pixels) {
+            assert!((*found - *wanted).map(f32::abs).max_channel() < 1e-5 * 5.0, "{found:?} {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn noise_of_flat_walls_falls_to_a_fiftieth_and_the_edge_stays() {
+    let walls = Walls::new(120, 80, 1.0);
+    let (before, after) = (walls.error(&walls.input()), walls.error(&walls.denoised()));
+    assert!((before - 1.0 / 6.0).abs() < 0.01, "{before}");
+    assert!(after < before / 50.0, "{before} {after}");
+    // The columns beside the edge hold nothing of the other side.
+    for column in [58, 59, 60, 61] {
+        let denoised = walls.denoised();
+        let pixels = (20..60).map(|y| denoised[y * 120 + column].b);
+        let (mean, truth) = (pixels.sum::<f32>() / 40.0, walls.truth[column].b);
+        assert!((mean / truth - 1.0).abs() < 0.06, "column {column}: {mean} {truth}");
+    }
+}
+
+#[test]
+fn without_features_noise_falls_too() {
+    let walls = Walls::new(96, 64, 0.6);
+    // Away from the edge, which nothing but the colour tells of now.
+    let flat = |pixels: &[Rgb]| {
+        let ratio = |i: usize| pixels[i].r / walls.truth[i].r - 1.0;
+        let inner: Vec<f32> = (0..pixels.len()).filter(|i| (i % 96).abs_diff(48) > 4).map(ratio).collect();
+        inner.iter().map(|r| r * r).sum::<f32>() / inner.len() as f32
+    };
+    let (before, bare) = (flat(&walls.input()), denoise(&walls.noisy(Features::default()), &Settings::default()));
+    assert!(flat(&bare) < before / 30.0, "{before} {}", flat(&bare));
+    let features = Features { albedo: walls.features().albedo, ..Features::default() };
+    let colours = denoise(&walls.noisy(features), &Settings::default());
+    assert!(flat(&colours) < before / 30.0, "{before} {}", flat(&colours));
+    for column in [46, 47, 48, 49] {
+        let mean = (0..64).map(|y| bare[y * 96 + column].r).sum::<f32>() / 64.0;
+        // Patches of windows on a grid hardly ever lie to a sharp edge exactly as a pixel's own does.
+        let bound = if column == 46 || column == 49 { 0.05 } else { 0.4 };
+        assert!((mean - walls.truth[column].r).abs() < bound, "column {column}: {mean}");
+    }
+}
+
+#[test]
+fn light_is_kept() {
+    let walls = Walls::new(120, 80, 1.0);
+    let sum = |pixels: &[Rgb]| pixels.iter().map(|c| f64::from(c.r + c.g + c.b)).sum::<f64>();
+    let ratio = sum(&walls.denoised()) / sum(&walls.input());
+    assert!((ratio - 1.0).abs() < 3e-3, "{ratio}");
+}
+
+#[test]
+fn pictures_of_any_size_pass() {
+    for (width, height) in [(1, 1), (1, 9), (23, 1), (2, 2), (8, 3), (97, 26)] {
+        let walls = Walls::new(width, height, 0.5);
+        for features in [walls.features(), Features::default()] {
+            let pixels = denoise(&walls.noisy(features), &Settings::default());
+            assert_eq!(pixels.len(), width * height);
+            assert!(pixels.iter().all(|c| c.is_finite() && c.max_channel() < 3.0), "{width} {height}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_number_is_filled_in_and_does_not_spread() {
+    let mut walls = Walls::new(90, 60, 0.5);
+    let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
+    for (k, number) in strange.into_iter().enumerate() {
+        let at = 30 * 90 + 10 + 3 * k;
+        walls.halves[0][at] = Rgb::new(0.5, number, 0.5);
+        walls.halves[1][at + 300] = Rgb::splat(number);
+        (walls.halves[0][at + 900], walls.halves[1][at + 900]) = (Rgb::splat(number), Rgb::splat(number));
+        walls.depth[at + 1] = number;
+        walls.normal[at + 2] = Vec3::splat(number);
+        walls.albedo[at + 3] = Rgb::splat(number);
+    }
+    let pixels = walls.denoised();
+    assert!(pixels.iter().all(|c| c.is_finite()));
+    assert!(walls.error(&pixels) < 0.01, "{}", walls.error(&pixels));
+    let lost = 40 * 90 + 10;
+    assert!((pixels[lost].r / walls.truth[lost].r - 1.0).abs() < 0.3, "{:?}", pixels[lost]);
+    let nothing = vec![Rgb::splat(f32::NAN); 12];
+    let noisy = Noisy::new(4, 3, [&nothing, &nothing], Features::default()).unwrap();
+    assert_eq!(denoise(&noisy, &Settings::default()), vec![Rgb::BLACK; 12]);
+}
+
+#[test]
+fn the_same_bits_on_any_threads_and_vector_units() {
+    let walls = Walls::new(200, 70, 0.8);
+    let wanted = bits(&walls.denoised());
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert!(bits(&pool.install(|| walls.denoised())) == wanted, "{threads} threads");
+    }
+    let best = SimdLevel::new();
+    #[cfg(target_arch = "x86_64")]
+    let levels = [best.as_sse2().map(SimdLevel::Sse2), best.as_avx2().map(SimdLevel::Avx2), Some(best)];
+    #[cfg(not(target_arch = "x86_64"))]
+    let levels = [Some(SimdLevel::baseline()), Some(best)];
+    for level in levels.into_iter().flatten() {
+        let found = denoise_at(level, &walls.noisy(walls.features()), &Settings::default(), &|| false).unwrap();
+        assert!(bits(&found.pixels) == wanted, "{level:?}");
+    }
+}
+
+#[test]
+fn strips_do_not_show() {
+    let walls = Walls::new(50, 130, 0.8);
+    let (noisy, settings) = (walls.noisy(walls.features()), Settings::default());
+    let run = |rows: usize| strips::denoise(SimdLevel::new(), &noisy, &settings, &|| false, rows).unwrap();
+    let (whole, strips) = (run(200), run(20));
+    assert_eq!(strips.pixels.len(), whole.pixels.len());
+    assert!((strips.removed - whole.removed).abs() < 1e-9);
+    for (i, (a, b)) in strips.pixels.iter().zip(&whole.pixels).enumerate() {
+        assert!((*a - *b).map(f32::abs).max_channel() < 1e-4, "row {}: {a:?} {b:?}", i / 50);
+    }
+}
+
+#[test]
+fn an_outlier_of_one_half_leaves_no_blotch_and_a_highlight_of_both_stays() {
+    let mut walls = Walls::new(96, 64, 0.2);
+    let (outlier, highlight) = (20 * 96 + 20, 40 * 96 + 70);
+    walls.halves[0][outlier] = Rgb::splat(5000.0);
+    walls.halves[0][highlight] = Rgb::splat(300.0);
+    walls.halves[1][highlight] = Rgb::splat(310.0);
+    let noisy = walls.noisy(walls.features());
+    let run = |cut_outliers| {
+        let settings = Settings { cut_outliers, ..Settings::default() };
+        denoise_unless(&noisy, &settings, &|| false).unwrap()
+    };
+    let Denoised { pixels, removed } = run(true);
+    for (x, y) in [(20, 20), (19, 21), (24, 20), (28, 28)] {
+        let found = pixels[y * 96 + x].r / walls.truth[y * 96 + x].r;
+        assert!((found - 1.0).abs() < 0.2, "{x} {y}: {found}");
+    }
+    assert!((pixels[highlight].g / 305.0 - 1.0).abs() < 0.02, "{:?}", pixels[highlight]);
+    let all = walls.halves.iter().flatten().map(|c| f64::from(c.r + c.g + c.b)).sum::<f64>();
+    assert!((removed / (15_000.0 / all) - 1.0).abs() < 0.01, "{removed}");
+    assert_eq!(run(false).removed, 0.0);
+}
+
+#[test]
+fn wrong_sizes_are_refused_and_it_stops_when_asked() {
+    let walls = Walls::new(30, 20, 0.5);
+    let halves = [&walls.halves[0][..], &walls.halves[1][..]];
+    let error = Noisy::new(30, 21, halves, Features::default()).unwrap_err();
+    assert_eq!(error.to_string(), "half of the picture has 600 pixels instead of 30 × 21");
+    assert!(Noisy::new(0, 0, [&[], &[]], Features::default()).is_err());
+    assert!(Noisy::new(usize::MAX, 2, halves, Features::default()).is_err());
+    let short = Features { depth: Some([&walls.depth, &walls.depth[1..]]), ..Features::default() };
+    assert!(Noisy::new(30, 20, halves, short).unwrap_err().to_string().starts_with("depth has 599"));
+    assert_eq!(denoise_unless(&walls.noisy(walls.features()), &Settings::default(), &|| true), None);
+}

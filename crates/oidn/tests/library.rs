@@ -1,0 +1,77 @@
+//! What is said when the library is missing, and, where `JUGGLER_OIDN` says where one is, what it does.
+
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
+
+use juggler_math::{Rgb, Vec3};
+use juggler_oidn::{Error, Library};
+use std::path::Path;
+
+/// The library, if the environment says where it is.
+fn library() -> Option<Library> {
+    let Some(path) = std::env::var_os("JUGGLER_OIDN") else {
+        eprintln!(
+            "SKIPPED: JUGGLER_OIDN does not say where Open Image Denoise is; docs/denoising.md says where to get it"
+        );
+        return None;
+    };
+    Some(Library::open(Some(Path::new(&path))).unwrap())
+}
+
+#[test]
+fn a_library_that_is_not_there_is_an_error_that_names_it() {
+    let error = Library::open(Some(Path::new("no/such/library.so"))).unwrap_err();
+    assert!(matches!(&error, Error::NotFound { tried } if tried.len() == 1));
+    assert!(error.to_string().contains("no/such/library.so"), "{error}");
+}
+
+#[test]
+fn a_folder_without_it_and_a_file_that_is_none_are_errors() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let error = Library::open(Some(folder)).unwrap_err();
+    assert!(error.to_string().contains("OpenImageDenoise"), "{error}");
+    let error = Library::open(Some(&folder.join("Cargo.toml"))).unwrap_err();
+    assert!(matches!(error, Error::NotFound { .. }), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn another_library_is_refused_by_what_it_lacks() {
+    let error = Library::open(Some(Path::new("libc.so.6"))).unwrap_err();
+    assert!(error.to_string().contains("oidnNewDevice"), "{error}");
+}
+
+#[test]
+fn the_names_of_the_system_are_tried_in_turn() {
+    match Library::open(None) {
+        Ok(library) => assert_eq!(library.version()[0], 2),
+        Err(error) => assert!(juggler_oidn::NAMES.iter().all(|name| error.to_string().contains(name)), "{error}"),
+    }
+}
+
+#[test]
+fn noise_goes_and_light_stays() {
+    let Some(library) = library() else { return };
+    let (width, height) = (96, 64);
+    let mut random = juggler_math::testing::Random::new(1);
+    let noisy: Vec<Rgb> = (0..width * height).map(|_| Rgb::splat(random.range(0.0, 2.0))).collect();
+    let (albedo, normal) = (vec![Rgb::splat(0.5); noisy.len()], vec![Vec3::Z; noisy.len()]);
+    let clean = library.denoise(width, height, &noisy, Some(&albedo), Some(&normal)).unwrap();
+    assert_eq!(clean.len(), noisy.len());
+    let mean = |pixels: &[Rgb]| pixels.iter().map(|c| c.g).sum::<f32>() / pixels.len() as f32;
+    let variance = |pixels: &[Rgb]| pixels.iter().map(|c| (c.g - 1.0) * (c.g - 1.0)).sum::<f32>() / pixels.len() as f32;
+    assert!((mean(&clean) - mean(&noisy)).abs() < 0.05, "{}", mean(&clean));
+    assert!(variance(&clean) < variance(&noisy) * 0.05, "{}", variance(&clean));
+    assert_eq!(library.denoise(width, height, &noisy, None, None).unwrap().len(), noisy.len());
+}
+
+#[test]
+fn wrong_sizes_are_refused_before_the_library_sees_them() {
+    let Some(library) = library() else { return };
+    let pixels = vec![Rgb::WHITE; 12];
+    assert!(library.denoise(4, 3, &pixels, None, None).is_ok());
+    assert!(matches!(library.denoise(4, 4, &pixels, None, None), Err(Error::Size { what: "color", found: 12, .. })));
+    let albedo = Some(&pixels[..11]);
+    assert!(matches!(library.denoise(4, 3, &pixels, albedo, None), Err(Error::Size { what: "albedo", .. })));
+    assert!(matches!(library.denoise(0, 0, &[], None, None), Err(Error::Size { .. })));
+    assert!(matches!(library.denoise(usize::MAX, 2, &[], None, None), Err(Error::Size { .. })));
+}
