@@ -34,7 +34,6 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         primaries: _,
         dither: _,
     } = &plan.settings;
-    let Options { png_16_bit, jpeg_quality, exr_depth, look, .. } = plan.options();
     let mut words = Words(format!("juggler render {}", quoted(&plan.scene)));
     words.flag("--size", size.map(|[width, height]| format!("{width}x{height}")));
     match limit {
@@ -53,10 +52,8 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
     words.flag("--seed", *seed);
     words.tone(&plan.settings);
-    words.flag("--look", Some(look.name()).filter(|_| look != Look::Plain));
     words.flag("--aov", Some(list(aovs)).filter(|_| !aovs.is_empty()));
-    words.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
-    words.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
+    words.encoding(plan.options());
     words.0
 }
 
@@ -85,6 +82,13 @@ impl Words {
         self.flag("--white-balance", light);
         self.flag("--primaries", primaries.map(Primaries::name));
         self.flag("--dither", dither.map(|dither| if dither { "on" } else { "off" }));
+    }
+
+    fn encoding(&mut self, options: Options) {
+        let Options { png_16_bit, jpeg_quality, exr_depth, look, .. } = options;
+        self.flag("--look", Some(look.name()).filter(|_| look != Look::Plain));
+        self.flag("--bits", (png_16_bit || exr_depth == SampleDepth::Half).then_some(16));
+        self.flag("--quality", Some(jpeg_quality).filter(|quality| *quality != Options::default().jpeg_quality));
     }
 
     fn flag(&mut self, name: &str, value: Option<impl Display>) {

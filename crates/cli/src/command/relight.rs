@@ -3,7 +3,7 @@
 use crate::console;
 use crate::failure::Failure;
 use crate::format::duration;
-use crate::output::{self, STANDARD_OUTPUT};
+use crate::output::STANDARD_OUTPUT;
 use crate::plan::Encoding;
 use clap::Args;
 use juggler::LayerSet;

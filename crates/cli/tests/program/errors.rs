@@ -3,10 +3,19 @@
 use crate::harness::Folder;
 use std::fs;
 
+/// Each of them is refused, and leaves nothing behind.
+fn refused(lines: &[&str]) {
+    let folder = Folder::new();
+    for line in lines {
+        let message = folder.bad(line, 2);
+        assert!(!message.trim().is_empty(), "{line}");
+        assert_eq!(folder.files(), [""; 0], "{line}");
+    }
+}
+
 #[test]
 fn wrong_command_lines() {
-    let folder = Folder::new();
-    for line in [
+    refused(&[
         "",
         "rendr",
         "render",
@@ -25,6 +34,14 @@ fn wrong_command_lines() {
         "render ball.json --integrator clasic",
         "render ball.json --integrator normals --max-depth 3",
         "render ball.json --camera mian",
+        "compare ball.json",
+        "bench nothing",
+    ]);
+}
+
+#[test]
+fn wrong_colours_and_files() {
+    refused(&[
         "render ball.json --tone sepia",
         "render ball.json --white-balance warm",
         "render ball.json --primaries adobe",
@@ -42,13 +59,7 @@ fn wrong_command_lines() {
         "render ball.json -o - --stats -",
         "render ball.json -o - --frames 0..2",
         "render ball.json -o a.webp --size 20000x1",
-        "compare ball.json",
-        "bench nothing",
-    ] {
-        let message = folder.bad(line, 2);
-        assert!(!message.trim().is_empty(), "{line}");
-        assert_eq!(folder.files(), [""; 0], "{line}");
-    }
+    ]);
 }
 
 #[test]

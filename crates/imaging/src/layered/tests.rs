@@ -1,5 +1,5 @@
 use super::*;
-use exr::prelude::{ReadChannels, ReadLayers};
+use ::exr::prelude::{ReadChannels, ReadLayers};
 
 fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
     let layers = names.iter().map(|(name, channels)| LayerHeader::new(name, channels));
@@ -8,6 +8,9 @@ fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
     let metadata = vec![("Software".to_owned(), "Juggler".to_owned())];
     LayeredHeader { width: 5, height: 37, layers, compression: ExrCompression::Zip, metadata }
 }
+
+/// What a channel is called, and its values.
+type Channel = (String, Vec<f32>);
 
 fn value(channel: usize, pixel: usize) -> f32 {
     (channel * 1000 + pixel) as f32 * 0.25
@@ -34,14 +37,14 @@ fn parts_are_what_an_independent_reader_finds() {
     written(&one, &header, &[37]);
     written(&two, &header, &[1, 16, 3, 17]);
     assert_eq!(std::fs::read(&one).unwrap(), std::fs::read(&two).unwrap(), "however rows are cut");
-    let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
+    let reader = ::exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
     let image = reader.all_layers().all_attributes().non_parallel().from_file(&one).unwrap();
-    let found: Vec<(String, Vec<(String, Vec<f32>)>)> = image
+    let found: Vec<(String, Vec<Channel>)> = image
         .layer_data
         .iter()
         .map(|layer| {
             let channels = layer.channel_data.list.iter();
-            let channel = |c: &exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
+            let channel = |c: &::exr::prelude::AnyChannel<::exr::prelude::FlatSamples>| {
                 (c.name.to_string(), c.sample_data.values_as_f32().collect())
             };
             (layer.attributes.layer_name.clone().unwrap().to_string(), channels.map(channel).collect())
@@ -60,7 +63,7 @@ fn parts_are_what_an_independent_reader_finds() {
         ("uv.U", 7),
         ("uv.V", 8),
     ];
-    let channels: Vec<&(String, Vec<f32>)> = found.iter().flat_map(|(_, channels)| channels).collect();
+    let channels: Vec<&Channel> = found.iter().flat_map(|(_, channels)| channels).collect();
     assert_eq!(channels.len(), expected.len());
     for ((name, values), (wanted, number)) in channels.into_iter().zip(expected) {
         assert_eq!(name, wanted);

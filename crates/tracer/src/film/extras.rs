@@ -115,7 +115,8 @@ fn merged(a: &[(u32, f32)], b: &[(u32, f32)]) -> Vec<(u32, f32)> {
         let next = match (a.peek(), b.peek()) {
             (Some((i, x)), Some((j, y))) if i == j => {
                 let both = (*i, x + y);
-                (a.next(), b.next());
+                a.next();
+                b.next();
                 Some(both)
             }
             (Some((i, _)), Some((j, _))) if i > j => b.next(),

@@ -7,6 +7,7 @@ use juggler_math::{Ray, Rgb, Transform, Vec3};
 use juggler_tracer::bsdf::Scatter;
 use juggler_tracer::camera::Shot;
 use juggler_tracer::integrator::{Emit, Integrator, PathState, Trail};
+use juggler_tracer::layer::LightGroup;
 use juggler_tracer::world::{Receiver, Shadows, Vertex, World};
 
 const MAX_DEPTH: u32 = 12;
@@ -32,7 +33,7 @@ impl Integrator for Plain {
             return emit.follow(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, path.trail, 0);
         }
         if self.0 == Finds::Lights || path.trail.pdf == f32::INFINITY {
-            emit.add(shade.emission);
+            emit.add(shade.emission, LightGroup::REST);
         }
         if path.depth + 1 >= MAX_DEPTH {
             return;
@@ -44,7 +45,7 @@ impl Integrator for Plain {
             if let Some(light) = world.sample_light(&to, path.sampler.at(1).next_2d()) {
                 let (scattered, _) = shade.bsdf.eval_pdf(local, shade.frame.to_local(light.wi));
                 let shadow = surface.spawn_to(light.wi, light.distance, ray.time);
-                emit.if_visible(shadow, light.radiance * scattered * (1.0 / light.pdf));
+                emit.if_visible(shadow, light.radiance * scattered * (1.0 / light.pdf), LightGroup::REST);
             }
         }
         if let Some(sample) = shade.bsdf.sample(local, path.sampler.at(2).next_2d(), path.sampler.at(3).next_1d()) {
@@ -56,7 +57,7 @@ impl Integrator for Plain {
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
         if self.0 == Finds::Lights || path.trail.pdf == f32::INFINITY {
-            emit.add(world.background(ray));
+            emit.add(world.background(ray), LightGroup::REST);
         }
     }
 

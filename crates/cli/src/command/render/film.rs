@@ -234,7 +234,7 @@ impl Exposure<'_> {
                 }
                 let in_picture = self.write_layers()?;
                 if in_picture {
-                    return Ok(picture.develop(&self.film, |_| Ok::<(), Failure>(()))?);
+                    return picture.develop(&self.film, |_| Ok(()));
                 }
                 let writer = self.session.writer(encoding.format, output, &self.header)?;
                 Ok(picture.write_film(&self.film, writer)?)
