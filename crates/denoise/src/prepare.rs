@@ -12,7 +12,9 @@ const DARKEST: f32 = 0.05;
 /// Channels from here on count as unknown like infinite ones: their squares would be.
 const BRIGHTEST: f32 = 1e15;
 /// Pixels to each side that variances are the mean of.
-const VARIANCE_REACH: usize = 3;
+const VARIANCE_REACH: usize = 2;
+/// Pixels to each side that say what variance is usual.
+const USUAL_REACH: usize = 3;
 
 /// How many times as much as usual around it, in squares, a pixel's halves may differ until it counts less in windows:
 /// rare bright samples would outweigh all others.
@@ -177,6 +179,6 @@ fn variance(halves: &[Vec<Rgb>; 2]) -> Vec<f32> {
 /// What is usual of numbers around each pixel: the mean of fourth roots, which a few large ones hardly change.
 fn usual(width: usize, numbers: &[f32]) -> Vec<f32> {
     let roots: Vec<f32> = numbers.par_iter().map(|number| number.sqrt().sqrt()).collect();
-    let means = blur::mean(width, &roots, VARIANCE_REACH);
+    let means = blur::mean(width, &roots, USUAL_REACH);
     means.into_par_iter().map(|mean| (mean * mean) * (mean * mean)).collect()
 }
