@@ -4,6 +4,7 @@ use crate::command::Command;
 use crate::progress::Progress;
 use crate::value::{self, FrameRange, Shard};
 use clap::{Args as Arguments, Parser};
+use juggler::Denoiser;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::tracer::film::Rect;
 
@@ -75,6 +76,11 @@ pub struct RenderArgs {
     /// holds them itself, another picture has them beside it (NAME.layers.exr)
     #[arg(long, value_name = "LIST", help_heading = "Output")]
     pub aov: Option<String>,
+
+    /// Take the noise out: `own` is the program's filter, the same bits everywhere, `oidn` Intel's Open Image Denoise where it is
+    /// installed (JUGGLER_OIDN may say where)
+    #[arg(long, value_name = "WITH", num_args = 0..=1, default_missing_value = "own", value_parser = value::denoiser, help_heading = "Output")]
+    pub denoise: Option<Denoiser>,
 
     /// Where the layers go: one .exr, or one .exr or .npy each where the name holds `{}` for the layer's
     #[arg(long, value_name = "FILE", help_heading = "Output")]

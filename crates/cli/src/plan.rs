@@ -149,7 +149,7 @@ impl Plan {
     pub fn needs_film(&self, shot: &Shot) -> bool {
         let is_kept =
             self.product == Product::Part || shot.checkpoint.is_some() || self.settings.limit != Limit::Samples;
-        is_kept || !self.settings.aovs.is_empty()
+        is_kept || !self.settings.aovs.is_empty() || self.settings.denoiser.is_some()
     }
 
     /// Whether a picture that is there already, made by the same command from the same scene, is left as it is.
@@ -234,7 +234,7 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         curve: args.tone.clone(),
         exposure_stops: args.exposure,
         aovs: Vec::new(),
-        guides: false,
+        denoiser: args.denoise,
         white_balance: args.white_balance,
         primaries: args.primaries,
         dither: args.dither,

@@ -4,7 +4,7 @@
 use crate::plan::{Moments, Plan, Shot};
 use juggler::imaging::{Look, Options, Primaries, SampleDepth, WhiteBalance};
 use juggler::tracer::film::Rect;
-use juggler::{Aov, Limit, Settings};
+use juggler::{Aov, Denoiser, Limit, Settings};
 use std::fmt::Display;
 
 /// In a command, the file that carries it.
@@ -27,7 +27,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         seed,
         crop,
         aovs,
-        guides: _,
+        denoiser,
         curve: _,
         exposure_stops: _,
         white_balance: _,
@@ -53,6 +53,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--seed", *seed);
     words.tone(&plan.settings);
     words.flag("--aov", Some(list(aovs)).filter(|_| !aovs.is_empty()));
+    words.flag("--denoise", denoiser.map(Denoiser::name));
     words.encoding(plan.options());
     words.0
 }

@@ -1,5 +1,6 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
+use juggler::Denoiser;
 use juggler::imaging::animation::PACES;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::scene::compile::MAX_SHUTTER;
@@ -74,6 +75,12 @@ pub fn switch(text: &str) -> Result<bool, String> {
         "off" => Ok(false),
         _ => Err("on or off".into()),
     }
+}
+
+/// A denoiser by its name.
+pub fn denoiser(text: &str) -> Result<Denoiser, String> {
+    let denoiser = Denoiser::ALL.into_iter().find(|denoiser| denoiser.name() == text);
+    denoiser.ok_or_else(|| Denoiser::ALL.map(Denoiser::name).join(" or "))
 }
 
 /// Frames a second.

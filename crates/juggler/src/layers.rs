@@ -173,6 +173,11 @@ impl LayerSet {
         set
     }
 
+    /// Whether the film keeps what denoising is guided by.
+    pub fn has_guides(&self) -> bool {
+        self.layers.place(Layer::Half(Guide::Color)).is_some()
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty() && self.wanted.is_empty()
@@ -198,7 +203,7 @@ impl LayerSet {
         if self.is_empty() {
             return Layered::default();
         }
-        let guides = self.layers.place(Layer::Half(Guide::Color)).map(|_| GUIDES.to_owned());
+        let guides = self.has_guides().then(|| GUIDES.to_owned());
         Layered {
             wanted: self.wanted.iter().map(|aov| aov.name().to_owned()).chain(guides).collect(),
             planes: self.layers.planes.len() as u32,

@@ -22,6 +22,7 @@
 //! Rendering uses the current rayon thread pool. The crates behind: [`math`], [`tracer`], [`scene`],
 //! [`imaging`], [`film`]. The folder `examples/` is a course in four steps.
 
+pub mod denoise;
 mod error;
 mod kinds;
 pub mod layers;
@@ -31,6 +32,7 @@ mod picture;
 pub mod prelude;
 mod settings;
 
+pub use denoise::Denoiser;
 pub use error::Error;
 pub use juggler_film as film;
 pub use juggler_imaging as imaging;

@@ -1,5 +1,6 @@
 //! A picture on a film: exposed in parts, kept, gone on with, joined.
 
+use crate::denoise::Guides;
 use crate::{Error, Limit, Picture};
 use juggler_film::part::{Description, Share, Stop};
 use juggler_imaging::layered::LayeredWriter;
@@ -64,14 +65,23 @@ impl Picture {
         Ok(summary)
     }
 
-    /// Writes the layers of a film, after the picture itself if `writer` is to hold that.
-    pub fn write_layers(&self, film: &Film, mut writer: LayeredWriter, with_picture: bool) -> Result<(), Error> {
+    /// Writes the layers of a film, after the pixels of the picture itself if `writer` is to hold them.
+    pub fn write_layers(&self, film: &Film, mut writer: LayeredWriter, pixels: Option<&[Rgb]>) -> Result<(), Error> {
         let layout = film.layout();
+        let mut rest = pixels;
         for (row, band) in (0..).zip(layout.bands()) {
             let tiles: Vec<Tile> = layout.in_band(row).filter_map(|number| film.tile_of(number)).collect();
-            writer.write_rows(&self.layers().band(&band, &tiles, with_picture))?;
+            let rows = rest.as_mut().and_then(|rest| rest.split_off(..band.area() as usize));
+            writer.write_rows(&self.layers().band(&band, &tiles, rows))?;
         }
         Ok(writer.finish()?)
+    }
+
+    /// What denoising a film needs: its halves, and what guides a filter.
+    pub fn guides(&self, film: &Film) -> Guides {
+        let mut guides = Guides::new(self.region());
+        film.tiles().for_each(|(_, tile)| guides.add(self.layers(), &tile));
+        guides
     }
 
     /// What ends it, as film parts say it.

@@ -52,6 +52,8 @@ pub struct Outcome {
     pub rays: Rays,
     /// Time spent on tracing rays.
     pub render: Duration,
+    /// Time spent on taking the noise out.
+    pub denoise: Duration,
     /// Time spent on encoding and writing.
     pub write: Duration,
 }
@@ -80,7 +82,7 @@ impl Picture {
         let (tone, limit, mut of_scene) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
         of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
-        let layers = Arc::new(LayerSet::new(&settings.aovs, settings.guides, &compiled.names));
+        let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser.is_some(), &compiled.names));
         let band_pixels = BAND_PIXELS;
         let mut picture = Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels, layers };
         picture.complete_fingerprint();
@@ -283,7 +285,8 @@ impl Picture {
         let render = start.elapsed().saturating_sub(write);
         let finish = Instant::now();
         writer.finish()?;
-        Ok(Outcome { film, rays: control.rays(), render, write: write + finish.elapsed() })
+        let (denoise, write) = (Duration::ZERO, write + finish.elapsed());
+        Ok(Outcome { film, rays: control.rays(), render, denoise, write })
     }
 
     /// Renders into memory.

@@ -1,7 +1,7 @@
 //! What a picture is asked for beyond what its scene says.
 
 use crate::kinds::{by_name, check_name};
-use crate::{Aov, Error};
+use crate::{Aov, Denoiser, Error};
 use juggler_imaging::{Primaries, Tone, WhiteBalance};
 use juggler_scene::Scene;
 use juggler_scene::description::{CameraName, Render};
@@ -86,8 +86,8 @@ pub struct Settings {
     pub exposure_stops: Option<f32>,
     /// What is asked for beside the picture.
     pub aovs: Vec<Aov>,
-    /// Whether the film keeps what denoising is guided by.
-    pub guides: bool,
+    /// What takes the noise out, if anything is to.
+    pub denoiser: Option<Denoiser>,
     /// Which light is to look white, likewise.
     pub white_balance: Option<WhiteBalance>,
     /// The primaries of the file.

@@ -50,7 +50,7 @@ fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
     let set = picture.layers();
     let tiles: Vec<_> = (0..film.layout().tiles()).filter_map(|number| film.tile_of(number)).collect();
     let names = set.headers().into_iter().flat_map(|layer| layer.channels);
-    (names.zip(set.band(&picture.region(), &tiles, false)).collect(), rows)
+    (names.zip(set.band(&picture.region(), &tiles, None)).collect(), rows)
 }
 
 /// The pixel at these coordinates of the scene's plane.

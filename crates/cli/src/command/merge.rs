@@ -97,7 +97,7 @@ impl Merge {
         };
         let summary = merge.rows_of_tiles(|band, tiles, rows| {
             if let Some((set, writer, with_picture)) = &mut layers {
-                writer.write_rows(&set.band(band, tiles, *with_picture))?;
+                writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;
             }
             Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
         })?;

@@ -20,17 +20,14 @@ struct Pixel<'t> {
 }
 
 impl LayerSet {
-    /// The rows of a band from its tiles, channel after channel: red, green and blue of the picture itself if it is wanted, then
-    /// those of [`LayerSet::headers`]. Pixels that no tile holds are 0.
-    pub fn band(&self, band: &Rect, tiles: &[Tile], with_picture: bool) -> Vec<Vec<f32>> {
-        let count = self.channels + if with_picture { 3 } else { 0 };
-        let mut rows = vec![vec![0.0; band.area() as usize]; count];
+    /// The rows of a band from its tiles, channel after channel: red, green and blue of the picture itself if its rows are given,
+    /// then those of [`LayerSet::headers`]. Pixels that no tile holds are 0.
+    pub fn band(&self, band: &Rect, tiles: &[Tile], picture: Option<&[Rgb]>) -> Vec<Vec<f32>> {
+        let mut layers = vec![vec![0.0; band.area() as usize]; self.channels];
         for tile in tiles {
-            let picture = if with_picture { channels_of(&tile.means()) } else { Vec::new() };
-            let values = picture.into_iter().chain(self.values(tile));
-            rows.iter_mut().zip(values).for_each(|(row, values)| tile.pixels().copy(&values, band, row));
+            layers.iter_mut().zip(self.values(tile)).for_each(|(row, values)| tile.pixels().copy(&values, band, row));
         }
-        rows
+        picture.map(channels_of).into_iter().flatten().chain(layers).collect()
     }
 
     /// The pixels of a tile with the light of each group times its gain, by number; where all are 1, the bits of the picture.

@@ -14,10 +14,11 @@ use juggler::film::part::{Description, Part, PartError, Share, write};
 use juggler::film::share::{self, Work};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{Header, inspect};
-use juggler::tracer::film::{Film, Rect, Summary, TILE};
+use juggler::math::Rgb;
+use juggler::tracer::film::{Digest, Film, Rect, Summary, TILE};
 use juggler::tracer::render::{Control, Stopped};
 use juggler::{Limit, Origin, Outcome, Picture, Settings};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
@@ -98,6 +99,15 @@ fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
     counts::from_text(counts, tiles).ok_or_else(other)
 }
 
+/// Of pixels that were made of a film's.
+fn summary_of(pixels: &[Rgb], picture: &Picture, film: &Film) -> Summary {
+    let [width, height] = picture.size();
+    let mut digest = Digest::new(width, height);
+    digest.update(pixels);
+    digest.clamp(film.clamped());
+    digest.finish()
+}
+
 /// Clears a checkpoint away that is of no use any more.
 pub fn forget(file: &str) {
     for file in [file.to_owned(), format!("{file}.previous")] {
@@ -123,15 +133,17 @@ impl Exposure<'_> {
             let file = kept.and(self.take.shot.checkpoint.clone());
             return Err(caught.map_or(Failure::System(Stopped.to_string()), |failure| failure.keeping(file)));
         }
-        let write = Instant::now();
-        let film = self.write()?;
+        let denoise = Instant::now();
+        let pixels = if self.session.plan.product == Product::Part { None } else { self.pixels(&control)? };
+        let (denoise, write) = (denoise.elapsed(), Instant::now());
+        let film = self.write(pixels.as_deref())?;
         if let Some(kept) = kept {
             kept.close();
         }
         if is_own {
             self.take.shot.checkpoint.as_deref().into_iter().for_each(forget);
         }
-        Ok(Outcome { film, rays: control.rays(), render, write: write.elapsed() })
+        Ok(Outcome { film, rays: control.rays(), render, denoise, write: write.elapsed() })
     }
 
     /// Opens the checkpoint and takes over what it holds. One of our own that does not fit is of another scene: it goes.
@@ -199,8 +211,17 @@ impl Exposure<'_> {
         })
     }
 
+    /// All pixels, the noise taken out of them where that is wished for.
+    fn pixels(&self, control: &Control) -> Result<Option<Vec<Rgb>>, Failure> {
+        let Some(denoiser) = self.session.plan.settings.denoiser else { return Ok(None) };
+        let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
+        let guides = self.take.picture.guides(&self.film);
+        let pixels = guides.denoise(denoiser, library.as_deref(), control)?;
+        pixels.map(Some).ok_or_else(|| Failure::System(Stopped.to_string()))
+    }
+
     /// Writes the layers that were asked for; whether the picture itself is among them.
-    fn write_layers(&self) -> Result<bool, Failure> {
+    fn write_layers(&self, pixels: Option<&[Rgb]>) -> Result<bool, Failure> {
         let Take { picture, shot, .. } = self.take;
         if picture.layers().wanted().is_empty() {
             return Ok(false);
@@ -212,12 +233,19 @@ impl Exposure<'_> {
         };
         let header = picture.layers().file_header(&self.header, with_picture);
         let writer = LayeredWriter::create(Path::new(file), &header)?;
-        picture.write_layers(&self.film, writer, with_picture)?;
+        let mut plain = Vec::new();
+        if with_picture && pixels.is_none() {
+            picture.develop(&self.film, |rows| {
+                plain.extend_from_slice(rows);
+                Ok::<(), Failure>(())
+            })?;
+        }
+        picture.write_layers(&self.film, writer, with_picture.then(|| pixels.unwrap_or(&plain)))?;
         Ok(with_picture)
     }
 
-    /// Writes the picture or the part.
-    fn write(&mut self) -> Result<Summary, Failure> {
+    /// Writes the picture or the part; `pixels` are those of the picture where they are not the film's.
+    fn write(&mut self, pixels: Option<&[Rgb]>) -> Result<Summary, Failure> {
         let (picture, output) = (self.take.picture, &self.take.shot.output);
         match self.session.plan.product {
             Product::Part => {
@@ -232,12 +260,19 @@ impl Exposure<'_> {
                     let counts = counts::to_text(&self.film.counts());
                     self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));
                 }
-                let in_picture = self.write_layers()?;
+                let in_picture = self.write_layers(pixels)?;
+                let summary = match pixels {
+                    Some(pixels) => summary_of(pixels, picture, &self.film),
+                    None => picture.develop(&self.film, |_| Ok::<(), Failure>(()))?,
+                };
                 if in_picture {
-                    return picture.develop(&self.film, |_| Ok(()));
+                    return Ok(summary);
                 }
-                let writer = self.session.writer(encoding.format, output, &self.header)?;
-                Ok(picture.write_film(&self.film, writer)?)
+                let mut writer = self.session.writer(encoding.format, output, &self.header)?;
+                let Some(pixels) = pixels else { return Ok(picture.write_film(&self.film, writer)?) };
+                writer.write_rows(pixels)?;
+                writer.finish()?;
+                Ok(summary)
             }
         }
     }

@@ -6,6 +6,7 @@ use crate::format::bytes;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::{Encoding, Plan, Product, Shard, Shot};
 use juggler::Limit;
+use juggler::denoise::Guides;
 use juggler::imaging::Header;
 use juggler::memory::{Effort, Memory, Part, sum};
 use juggler::scene::Scene;
@@ -22,6 +23,10 @@ pub fn of(plan: &Plan, scene: &Scene, shot: &Shot) -> Result<Memory, Failure> {
         // Numbers of samples may come from a file: then all the film may get that many.
         let (crop, shards) = if plan.samples_from.is_some() { (None, 1) } else { (plan.cut.crop, shot.shard.count) };
         memory = memory.on_film(crop, plan.cut.samples.clone(), shards);
+    }
+    if plan.settings.denoiser.is_some() {
+        let bytes = memory.region().area().saturating_mul(Guides::BYTES);
+        memory = memory.and("taking the noise out", bytes);
     }
     if let Product::Picture(Encoding { format, options }) = plan.product {
         let (width, height) = (memory.region().width, memory.region().height);

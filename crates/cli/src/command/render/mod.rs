@@ -251,7 +251,7 @@ impl Session {
             load: take.load.as_secs_f64(),
             build: take.build.as_secs_f64(),
             render: outcome.render.as_secs_f64(),
-            denoise: 0.0,
+            denoise: outcome.denoise.as_secs_f64(),
             write: outcome.write.as_secs_f64(),
             total: total.as_secs_f64(),
         };
