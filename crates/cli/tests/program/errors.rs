@@ -14,6 +14,26 @@ fn refused(lines: &[&str]) {
 }
 
 #[test]
+fn wrong_tones() {
+    let folder = Folder::new();
+    for line in [
+        "render ball.json --white-balance warm",
+        "render ball.json --primaries adobe",
+        "render ball.json --primaries acescg",
+        "render ball.json --primaries rec2020 -o a.jpg",
+        "render ball.json --primaries rec2020 --noise 0.5 -o a.webp",
+        "render ball.json --primaries display_p3 --look ham",
+        "render ball.json --primaries display_p3 -o a.apng",
+        "render ball.json --dither maybe",
+    ] {
+        let message = folder.bad(line, 2);
+        let flag = line.split(' ').find(|word| word.starts_with("--")).unwrap();
+        assert!(message.contains(flag.trim_start_matches('-')), "{line}: {message}");
+        assert_eq!(folder.files(), [""; 0], "{line}");
+    }
+}
+
+#[test]
 fn wrong_command_lines() {
     refused(&[
         "",
@@ -43,14 +63,6 @@ fn wrong_command_lines() {
 fn wrong_colours_and_files() {
     refused(&[
         "render ball.json --tone sepia",
-        "render ball.json --white-balance warm",
-        "render ball.json --primaries adobe",
-        "render ball.json --primaries acescg",
-        "render ball.json --primaries rec2020 -o a.jpg",
-        "render ball.json --primaries rec2020 --noise 0.5 -o a.webp",
-        "render ball.json --primaries display_p3 --look ham",
-        "render ball.json --primaries display_p3 -o a.apng",
-        "render ball.json --dither maybe",
         "render ball.json --bits 12",
         "render ball.json --quality 90",
         "render ball.json -o a.tga",

@@ -58,7 +58,7 @@ impl Levels {
     }
 }
 
-/// How many 256ths of a level are added before the rest is cut off, at a pixel: 0 to 255.
+/// How many steps of a level, 0 to 255, are added at a pixel before the rest is cut off.
 fn threshold(x: u32, y: u32) -> u16 {
     let at = x.wrapping_mul(ALPHA[0]).wrapping_add(y.wrapping_mul(ALPHA[1]));
     let folded = if at >> 31 == 0 { at } else { !at };
