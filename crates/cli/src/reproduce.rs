@@ -26,8 +26,8 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
         shutter,
         seed,
         crop,
-        aovs,
-        denoiser,
+        aovs: _,
+        denoiser: _,
         curve: _,
         exposure_stops: _,
         white_balance: _,
@@ -52,8 +52,7 @@ pub fn command(plan: &Plan, shot: &Shot) -> String {
     words.flag("--crop", crop.map(|Rect { x, y, width, height }| format!("{x},{y},{width},{height}")));
     words.flag("--seed", *seed);
     words.tone(&plan.settings);
-    words.flag("--aov", Some(list(aovs)).filter(|_| !aovs.is_empty()));
-    words.flag("--denoise", denoiser.map(Denoiser::name));
+    words.layers(&plan.settings);
     words.encoding(plan.options());
     words.0
 }
@@ -83,6 +82,12 @@ impl Words {
         self.flag("--white-balance", light);
         self.flag("--primaries", primaries.map(Primaries::name));
         self.flag("--dither", dither.map(|dither| if dither { "on" } else { "off" }));
+    }
+
+    fn layers(&mut self, settings: &Settings) {
+        let Settings { aovs, denoiser, .. } = settings;
+        self.flag("--aov", Some(list(aovs)).filter(|_| !aovs.is_empty()));
+        self.flag("--denoise", denoiser.map(Denoiser::name));
     }
 
     fn encoding(&mut self, options: Options) {

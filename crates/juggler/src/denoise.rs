@@ -97,7 +97,12 @@ impl Guides {
 
     /// The picture without noise; `library` is the place of Open Image Denoise where the system does not know it. Nothing when
     /// `control` was cancelled.
-    pub fn denoise(&self, with: Denoiser, library: Option<&Path>, control: &Control) -> Result<Option<Vec<Rgb>>, Error> {
+    pub fn denoise(
+        &self,
+        with: Denoiser,
+        library: Option<&Path>,
+        control: &Control,
+    ) -> Result<Option<Vec<Rgb>>, Error> {
         let (width, height) = (self.region.width as usize, self.region.height as usize);
         match with {
             Denoiser::Own => {
@@ -117,7 +122,8 @@ impl Guides {
                 let both = |halves: &[Vec<Rgb>; 2]| -> Vec<Rgb> {
                     halves[0].iter().zip(&halves[1]).map(|(a, b)| (*a + *b) * 0.5).collect()
                 };
-                let normal: Vec<Vec3> = self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
+                let normal: Vec<Vec3> =
+                    self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
                 library.denoise(width, height, &color, Some(&albedo), Some(&normal)).map(Some).map_err(failed)
             }
