@@ -79,8 +79,7 @@ pub fn switch(text: &str) -> Result<bool, String> {
 
 /// A denoiser by its name.
 pub fn denoiser(text: &str) -> Result<Denoiser, String> {
-    let denoiser = Denoiser::ALL.into_iter().find(|denoiser| denoiser.name() == text);
-    denoiser.ok_or_else(|| Denoiser::ALL.map(Denoiser::name).join(" or "))
+    Denoiser::by_name(text).map_err(|error| error.to_string())
 }
 
 /// Frames a second.

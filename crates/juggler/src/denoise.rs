@@ -1,6 +1,6 @@
 //! Taking the noise out of a film's picture: its halves and what guides the filter, gathered tile by tile.
 
-use crate::{Error, LayerSet};
+use crate::{Error, LayerSet, check_name};
 use juggler_denoise::{Features, Noisy, denoise_unless};
 use juggler_math::{Rgb, Vec3};
 use juggler_oidn::Library;
@@ -21,6 +21,13 @@ pub enum Denoiser {
 impl Denoiser {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Own, Self::Oidn];
+
+    /// The one of that name; an error says which was probably meant.
+    pub fn by_name(name: &str) -> Result<Self, Error> {
+        check_name("denoiser", name, Self::ALL.iter().map(|denoiser| denoiser.name()))?;
+        // It is one of them.
+        Ok(Self::ALL.into_iter().find(|denoiser| denoiser.name() == name).unwrap_or(Self::Own))
+    }
 
     /// As it is asked for.
     pub fn name(self) -> &'static str {

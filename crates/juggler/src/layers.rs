@@ -3,7 +3,7 @@
 mod cryptomatte;
 mod values;
 
-use crate::{Error, check_name};
+use crate::{Denoiser, Error, check_name};
 use juggler_film::part::Layered;
 use juggler_imaging::Header;
 use juggler_imaging::layered::{LayerHeader, LayeredHeader};
@@ -147,13 +147,14 @@ pub struct LayerSet {
     wanted: Vec<Aov>,
     layers: Layers,
     names: Names,
+    denoiser: Option<Denoiser>,
     /// How many channels all layers have.
     channels: usize,
 }
 
 impl LayerSet {
-    /// Of a scene with these names; `guides` are what denoising asks for.
-    pub fn new(wanted: &[Aov], guides: bool, names: &Names) -> Self {
+    /// Of a scene with these names, with what the `denoiser` asks for.
+    pub fn new(wanted: &[Aov], denoiser: Option<Denoiser>, names: &Names) -> Self {
         let wanted: Vec<Aov> = Aov::ALL.into_iter().filter(|aov| wanted.contains(aov)).collect();
         let mut planes: Vec<Layer> = Vec::new();
         let guide = Guide::ALL.into_iter().flat_map(|guide| {
@@ -161,21 +162,21 @@ impl LayerSet {
             whole.into_iter().chain([Layer::Half(guide)])
         });
         let needed = wanted.iter().flat_map(|aov| aov.needs(names));
-        for layer in needed.chain(guide.filter(|_| guides)) {
+        for layer in needed.chain(guide.filter(|_| denoiser.is_some())) {
             if !planes.contains(&layer) {
                 planes.push(layer);
             }
         }
         let masks = wanted.iter().any(|aov| aov.needs_masks());
         let names = if wanted.is_empty() { Names::default() } else { names.clone() };
-        let mut set = Self { layers: Layers { planes, masks }, wanted, names, channels: 0 };
+        let mut set = Self { layers: Layers { planes, masks }, wanted, names, denoiser, channels: 0 };
         set.channels = set.headers().iter().map(|layer| layer.channels.len()).sum();
         set
     }
 
-    /// Whether the film keeps what denoising is guided by.
-    pub fn has_guides(&self) -> bool {
-        self.layers.place(Layer::Half(Guide::Color)).is_some()
+    /// What takes the noise out of the picture, whose film keeps what that is guided by.
+    pub fn denoiser(&self) -> Option<Denoiser> {
+        self.denoiser
     }
 
     /// Whether there are none.
@@ -203,9 +204,9 @@ impl LayerSet {
         if self.is_empty() {
             return Layered::default();
         }
-        let guides = self.has_guides().then(|| GUIDES.to_owned());
+        let denoiser = self.denoiser.map(|denoiser| format!("{DENOISED}{}", denoiser.name()));
         Layered {
-            wanted: self.wanted.iter().map(|aov| aov.name().to_owned()).chain(guides).collect(),
+            wanted: self.wanted.iter().map(|aov| aov.name().to_owned()).chain(denoiser).collect(),
             planes: self.layers.planes.len() as u32,
             masks: self.layers.masks,
             entries: self.names.entries,
@@ -223,10 +224,10 @@ impl LayerSet {
             materials: part.materials.iter().map(|(id, name)| (MaterialId(*id), name.clone())).collect(),
             light_groups: part.light_groups.clone(),
         };
-        let guides = part.wanted.iter().any(|name| name == GUIDES);
-        let aovs = part.wanted.iter().filter(|name| *name != GUIDES);
+        let denoiser = part.wanted.iter().find_map(|name| name.strip_prefix(DENOISED)).map(Denoiser::by_name);
+        let aovs = part.wanted.iter().filter(|name| !name.starts_with(DENOISED));
         let wanted: Vec<Aov> = aovs.map(|name| Aov::by_name(name)).collect::<Result<_, _>>()?;
-        let set = Self::new(&wanted, guides, &names);
+        let set = Self::new(&wanted, denoiser.transpose()?, &names);
         if set.layers.planes.len() as u32 != part.planes || set.layers.masks != part.masks {
             return Err(Error::Settings("the film part has other layers than it says".into()));
         }
@@ -275,5 +276,5 @@ impl LayerSet {
     }
 }
 
-/// What film parts call that which denoising asks for.
-const GUIDES: &str = "denoising";
+/// What film parts call it that noise is taken out, before the name of what does it.
+const DENOISED: &str = "denoised:";

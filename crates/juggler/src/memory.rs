@@ -107,9 +107,7 @@ impl Memory {
             region: settings.region(settings.size_of(scene))?,
             samples: settings.samples_of(scene),
             in_bands: true,
-            layers: LayerSet::new(&settings.aovs, settings.denoiser.is_some(), &Names::of(&scene.description))
-                .layers()
-                .clone(),
+            layers: LayerSet::new(&settings.aovs, settings.denoiser, &Names::of(&scene.description)).layers().clone(),
         })
     }
 

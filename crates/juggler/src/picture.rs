@@ -82,7 +82,7 @@ impl Picture {
         let (tone, limit, mut of_scene) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
         of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
-        let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser.is_some(), &compiled.names));
+        let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser, &compiled.names));
         let band_pixels = BAND_PIXELS;
         let mut picture = Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels, layers };
         picture.complete_fingerprint();

@@ -8,13 +8,16 @@ use crate::plan::layers::{self, Place};
 use crate::plan::{Encoding, PART_ENDING};
 use crate::stats::Clamped;
 use clap::Args;
-use juggler::LayerSet;
+use juggler::denoise::Guides;
 use juggler::film::{self, Description, Wanted};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{self, Header, Tone};
-use juggler::tracer::film::Summary;
+use juggler::math::Rgb;
+use juggler::tracer::film::{Digest, Summary};
+use juggler::tracer::render::Control;
+use juggler::{Denoiser, LayerSet};
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Flags of `juggler merge`.
@@ -51,6 +54,18 @@ pub struct Merge {
 enum Made {
     Picture(Summary),
     Part(u64),
+}
+
+/// The pixels of the picture that the parts make, without noise.
+fn denoised(merge: &film::Merge, set: &LayerSet, denoiser: Denoiser) -> Result<Vec<Rgb>, Failure> {
+    let mut guides = Guides::new(merge.description().region);
+    merge.rows_of_tiles(|_, tiles, _| {
+        tiles.iter().for_each(|tile| guides.add(set, tile));
+        Ok::<(), Failure>(())
+    })?;
+    let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
+    // Nobody cancels it.
+    Ok(guides.denoise(denoiser, library.as_deref(), &Control::default())?.unwrap_or_default())
 }
 
 impl Merge {
@@ -95,7 +110,12 @@ impl Merge {
             STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
             file => Some(imaging::create(Path::new(file), format, &header)?),
         };
-        let summary = merge.rows_of_tiles(|band, tiles, rows| {
+        let set = LayerSet::of_part(&merge.description().layers)?;
+        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser)).transpose()?;
+        let (mut rest, mut digest) = (denoised.as_deref(), Digest::new(region.width, region.height));
+        let mut summary = merge.rows_of_tiles(|band, tiles, rows| {
+            let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
+            digest.update(rows);
             if let Some((set, writer, with_picture)) = &mut layers {
                 writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;
             }
@@ -103,6 +123,8 @@ impl Merge {
         })?;
         writer.map_or(Ok(()), |writer| writer.finish())?;
         layers.map_or(Ok(()), |(_, writer, _)| writer.finish())?;
+        let Summary { hash, mean, .. } = digest.finish();
+        (summary.hash, summary.mean) = (hash, mean);
         Ok(summary)
     }
 

@@ -94,3 +94,28 @@ fn lights_are_mixed_anew_without_a_ray() {
     render(1.0, "[1, 1, 1]", "-o plain.jfilm");
     assert!(folder.bad("relight plain.jfilm --gain key=2 -o a.png", 2).contains("light_groups"));
 }
+
+#[test]
+fn noise_is_taken_out_the_same_way_by_shards() {
+    let folder = Folder::new();
+    let line = format!("render {BALL} --denoise");
+    let noisy = folder.hash(&format!("{BALL} -o noisy.pfm"));
+    assert_ne!(folder.hash(&format!("{BALL} --denoise -o whole.png --threads 1")), noisy);
+    for index in 0..3 {
+        folder.good(&format!("{line} --shard {index}/3 -o part{index}.jfilm -q"));
+    }
+    folder.good("merge part0.jfilm part1.jfilm part2.jfilm -o merged.png -q");
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert!(bytes("whole.png") == bytes("merged.png"));
+    folder.good(&format!("render {BALL} --aov depth --denoise -o whole.exr -q"));
+    folder.good(&format!("render {BALL} --denoise -o whole.pfm -q"));
+    folder.good("compare whole.exr whole.pfm");
+    folder.good(&format!("render {BALL} --samples 1024 -o right.pfm -q").replace("--samples 20 ", ""));
+    let error = |name: &str| {
+        let said = folder.run(&format!("compare {name} right.pfm --stats -")).stdout;
+        serde_json::from_str::<serde_json::Value>(&said).unwrap()["relative_mse"].as_f64().unwrap()
+    };
+    assert!(error("whole.pfm") < 0.8 * error("noisy.pfm"), "{} {}", error("whole.pfm"), error("noisy.pfm"));
+    let message = folder.bad(&format!("render {BALL} --denoise owl"), 2);
+    assert!(message.contains("own"), "{message}");
+}
