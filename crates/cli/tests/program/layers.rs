@@ -76,7 +76,7 @@ fn lights_are_mixed_anew_without_a_ray() {
     };
     let render = |key: f64, color: &str, line: &str| {
         fs::write(folder.path("lit.json"), scene(key, color)).unwrap();
-        folder.good(&format!("render lit.json --size 24x18 --samples 16 --integrator path -q {line}"));
+        folder.good(&format!("render lit.json --size 24x18 --samples 16 -q {line}"));
     };
     render(1.0, "[1, 1, 1]", "--aov light_groups -o film.jfilm");
     render(1.0, "[1, 1, 1]", "-o as_it_was.pfm");
