@@ -1,6 +1,7 @@
 //! Taking the noise out of a film's picture: its halves and what guides the filter, gathered tile by tile.
 
 use crate::{Error, LayerSet, check_name};
+pub use juggler_denoise::Denoised;
 use juggler_denoise::{Features, Noisy, denoise_unless};
 use juggler_math::{Rgb, Vec3};
 use juggler_oidn::Library;
@@ -102,14 +103,14 @@ impl Guides {
         }
     }
 
-    /// The picture without noise; `library` is the place of Open Image Denoise where the system does not know it. Nothing when
+    /// The picture without noise, from 2 samples a pixel on; `library` is the place of Open Image Denoise where the system does not know it. Nothing when
     /// `control` was cancelled.
     pub fn denoise(
         &self,
         with: Denoiser,
         library: Option<&Path>,
         control: &Control,
-    ) -> Result<Option<Vec<Rgb>>, Error> {
+    ) -> Result<Option<Denoised>, Error> {
         let (width, height) = (self.region.width as usize, self.region.height as usize);
         match with {
             Denoiser::Own => {
@@ -120,8 +121,7 @@ impl Guides {
                 };
                 let noisy = Noisy::new(width, height, self.color.each_ref().map(Vec::as_slice), features);
                 let noisy = noisy.map_err(|error| Error::Settings(error.to_string()))?;
-                let denoised = denoise_unless(&noisy, &<_>::default(), &|| control.is_cancelled());
-                Ok(denoised.map(|denoised| denoised.pixels))
+                Ok(denoise_unless(&noisy, &<_>::default(), &|| control.is_cancelled()))
             }
             Denoiser::Oidn => {
                 let failed = |error: juggler_oidn::Error| Error::Settings(error.to_string());
@@ -132,7 +132,8 @@ impl Guides {
                 let normal: Vec<Vec3> =
                     self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
-                library.denoise(width, height, &color, Some(&albedo), Some(&normal)).map(Some).map_err(failed)
+                let pixels = library.denoise(width, height, &color, Some(&albedo), Some(&normal)).map_err(failed)?;
+                Ok(Some(Denoised { pixels, removed: 0.0 }))
             }
         }
     }

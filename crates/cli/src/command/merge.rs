@@ -65,7 +65,8 @@ fn denoised(merge: &film::Merge, set: &LayerSet, denoiser: Denoiser) -> Result<V
     })?;
     let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
     // Nobody cancels it.
-    Ok(guides.denoise(denoiser, library.as_deref(), &Control::default())?.unwrap_or_default())
+    let denoised = guides.denoise(denoiser, library.as_deref(), &Control::default())?;
+    Ok(denoised.map(|denoised| denoised.pixels).unwrap_or_default())
 }
 
 impl Merge {

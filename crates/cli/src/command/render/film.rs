@@ -8,6 +8,7 @@ use crate::plan::layers::{self, Place};
 use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard};
 use crate::progress::{Watch, watched};
 use crate::reproduce::{self, SAMPLES_PER_TILE};
+use juggler::denoise::Denoised;
 use juggler::film::checkpoint::{self, Checkpoint};
 use juggler::film::counts;
 use juggler::film::part::{Description, Part, PartError, Share, write};
@@ -97,6 +98,17 @@ fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
         return Err(other());
     }
     counts::from_text(counts, tiles).ok_or_else(other)
+}
+
+/// Says how much light was cut that stood out too far to be anything but chance, where that is more than a trifle.
+pub fn tell_removed(denoised: &Denoised) {
+    const TRIFLE: f64 = 1e-3;
+    if denoised.removed >= TRIFLE {
+        let percent = 100.0 * denoised.removed;
+        console::say(&format!(
+            "note: taking the noise out cut {percent:.1} % of the light, in pixels that stood out by chance"
+        ));
+    }
 }
 
 /// Of pixels that were made of a film's.
@@ -214,10 +226,19 @@ impl Exposure<'_> {
     /// All pixels, the noise taken out of them where that is wished for.
     fn pixels(&self, control: &Control) -> Result<Option<Vec<Rgb>>, Failure> {
         let Some(denoiser) = self.session.plan.settings.denoiser else { return Ok(None) };
+        if self.take.picture.samples() < 2 {
+            return Err(Failure::Wrong(
+                "--denoise needs 2 samples a pixel or more: their differences are what it goes by".into(),
+            ));
+        }
         let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
         let guides = self.take.picture.guides(&self.film);
-        let pixels = guides.denoise(denoiser, library.as_deref(), control)?;
-        pixels.map(Some).ok_or_else(|| Failure::System(Stopped.to_string()))
+        let denoised = guides.denoise(denoiser, library.as_deref(), control)?;
+        let denoised = denoised.ok_or_else(|| Failure::System(Stopped.to_string()))?;
+        if !self.session.plan.quiet {
+            tell_removed(&denoised);
+        }
+        Ok(Some(denoised.pixels))
     }
 
     /// Writes the layers that were asked for; whether the picture itself is among them.
