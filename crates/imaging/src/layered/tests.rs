@@ -13,7 +13,7 @@ fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
 type Channel = (String, Vec<f32>);
 
 fn value(channel: usize, pixel: usize) -> f32 {
-    (channel * 1000 + pixel) as f32 * 0.25
+    (channel * 200 + pixel) as f32 * 0.25
 }
 
 fn written(path: &Path, header: &LayeredHeader, pieces: &[usize]) {

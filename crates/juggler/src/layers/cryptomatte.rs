@@ -96,9 +96,9 @@ mod tests {
     fn things_are_ranked_by_their_share_and_names_that_are_the_same_are_one_thing() {
         let name = |number: u32| if number < 2 { "twin".to_owned() } else { format!("{number}") };
         let mut row = Vec::new();
-        put(vec![(0, 0.2), (1, 0.15), (2, 0.3), (3, 0.0)], name, &mut row);
+        put(vec![(0, 0.25), (1, 0.125), (2, 0.3), (3, 0.0)], name, &mut row);
         assert_eq!(row.len(), 2 * RANKS);
-        assert_eq!((row[0].to_bits(), row[1]), (hash("twin"), 0.35));
+        assert_eq!((row[0].to_bits(), row[1]), (hash("twin"), 0.375));
         assert_eq!((row[2].to_bits(), row[3]), (hash("2"), 0.3));
         assert_eq!(row[4..], [0.0; 8]);
     }
