@@ -104,38 +104,34 @@ impl Merge {
         let tone: Tone = serde_json::from_value(tone.clone())
             .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
         let header = Header { tone, options, metadata: metadata.clone(), ..Header::new(region.width, region.height) };
-        let mut layers = self.layers(merge.description(), &header)?;
-        let with_picture = layers.as_ref().is_some_and(|(_, _, with_picture)| *with_picture);
+        let set = LayerSet::of_part(&merge.description().layers)?;
+        let mut layers = self.layers(&set, &header)?;
+        let with_picture = layers.as_ref().is_some_and(|(_, with_picture)| *with_picture);
         let mut writer = match self.output.as_str() {
             _ if with_picture => None,
             STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
             file => Some(imaging::create(Path::new(file), format, &header)?),
         };
-        let set = LayerSet::of_part(&merge.description().layers)?;
         let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser)).transpose()?;
-        let (mut rest, mut digest) = (denoised.as_deref(), Digest::new(region.width, region.height));
-        let mut summary = merge.rows_of_tiles(|band, tiles, rows| {
+        let mut rest = denoised.as_deref();
+        let summary = merge.rows_of_tiles(|band, tiles, rows| {
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
-            digest.update(rows);
-            if let Some((set, writer, with_picture)) = &mut layers {
+            if let Some((writer, with_picture)) = &mut layers {
                 writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;
             }
             Ok::<(), Failure>(writer.as_mut().map_or(Ok(()), |writer| writer.write_rows(rows))?)
         })?;
         writer.map_or(Ok(()), |writer| writer.finish())?;
-        layers.map_or(Ok(()), |(_, writer, _)| writer.finish())?;
+        layers.map_or(Ok(()), |(writer, _)| writer.finish())?;
+        let Some(pixels) = denoised else { return Ok(summary) };
+        let mut digest = Digest::new(region.width, region.height);
+        digest.update(&pixels);
         let Summary { hash, mean, .. } = digest.finish();
-        (summary.hash, summary.mean) = (hash, mean);
-        Ok(summary)
+        Ok(Summary { hash, mean, ..summary })
     }
 
     /// The layers that the parts keep, and their file; whether the picture is in it.
-    fn layers(
-        &self,
-        picture: &Description,
-        header: &Header,
-    ) -> Result<Option<(LayerSet, LayeredWriter, bool)>, Failure> {
-        let set = LayerSet::of_part(&picture.layers)?;
+    fn layers(&self, set: &LayerSet, header: &Header) -> Result<Option<(LayeredWriter, bool)>, Failure> {
         if set.wanted().is_empty() {
             return match &self.aov_output {
                 Some(_) => {
@@ -151,7 +147,7 @@ impl Merge {
             Place::File(file) => (file.as_str(), false),
         };
         let writer = LayeredWriter::create(Path::new(file), &set.file_header(header, with_picture))?;
-        Ok(Some((set, writer, with_picture)))
+        Ok(Some((writer, with_picture)))
     }
 
     fn report(&self, picture: &Description, made: &Made, start: Instant) -> Result<(), Failure> {

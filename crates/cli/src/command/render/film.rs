@@ -282,18 +282,19 @@ impl Exposure<'_> {
                     self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));
                 }
                 let in_picture = self.write_layers(pixels)?;
-                let summary = match pixels {
-                    Some(pixels) => summary_of(pixels, picture, &self.film),
-                    None => picture.develop(&self.film, |_| Ok::<(), Failure>(()))?,
-                };
-                if in_picture {
-                    return Ok(summary);
+                let writer = || self.session.writer(encoding.format, output, &self.header);
+                match pixels {
+                    None if in_picture => picture.develop(&self.film, |_| Ok(())),
+                    None => Ok(picture.write_film(&self.film, writer()?)?),
+                    Some(pixels) => {
+                        if !in_picture {
+                            let mut writer = writer()?;
+                            writer.write_rows(pixels)?;
+                            writer.finish()?;
+                        }
+                        Ok(summary_of(pixels, picture, &self.film))
+                    }
                 }
-                let mut writer = self.session.writer(encoding.format, output, &self.header)?;
-                let Some(pixels) = pixels else { return Ok(picture.write_film(&self.film, writer)?) };
-                writer.write_rows(pixels)?;
-                writer.finish()?;
-                Ok(summary)
             }
         }
     }
