@@ -62,7 +62,7 @@ const connection = new Connection({
 function gotStatus(news) {
   forgetUnseen(news);
   status = news;
-  if (catalogue) showStatus(status, titleOf(status.scene));
+  if (catalogue) showStatus(status, titleOf(status.scene), edit);
   notices.sceneError(status.error);
   if (!choosingRegion) picture.frame(status.region);
   if (probing.mode !== "off") askProbe();
@@ -221,6 +221,6 @@ async function readCatalogue() {
   const fit = () => [canvas.width, canvas.height];
   watchPanel(catalogue, edit, fit);
   fillScenes(catalogue, (name) => edit({ scene: name }));
-  if (status) showStatus(status, titleOf(status.scene));
+  if (status) showStatus(status, titleOf(status.scene), edit);
 }
 readCatalogue();

@@ -2,6 +2,7 @@
 
 import { element } from "./notices.js";
 import { steering } from "./camera.js";
+import { showLights } from "./lights.js";
 
 const byId = (id) => document.getElementById(id);
 const SIZES = [[320, 180], [640, 360], [960, 540], [1280, 720], [1920, 1080], [640, 480], [1024, 768]];
@@ -99,7 +100,7 @@ export function setMode(mode) {
 }
 
 /// Shows how things stand.
-export function showStatus(status, title) {
+export function showStatus(status, title, edit) {
   byId("scene-title").textContent = title;
   document.title = `${title} · juggler`;
   byId("stage-chip").dataset.stage = status.stage;
@@ -120,6 +121,7 @@ export function showStatus(status, title) {
   byId("whole").hidden = !status.region;
   byId("hash").hidden = !status.hash;
   byId("hash").textContent = status.hash ? `film hash ${status.hash}` : "";
+  showLights(status.light_groups, edit);
   showTime(status);
 }
 

@@ -13,6 +13,8 @@ pub const MAX_PIXELS: u64 = 1 << 24;
 pub const MAX_SAMPLES: u32 = 1 << 24;
 /// Most threads.
 pub const MAX_THREADS: usize = 256;
+/// The most that a page may make the light of a group stronger by.
+const MAX_GAIN: f32 = 1e6;
 /// Longest name of anything.
 const MAX_NAME: usize = 100;
 /// Where a scene's values may be changed: none of these names a file or decides how much there is.
@@ -71,6 +73,10 @@ fn check_setting(setting: &Setting) -> Result<(), String> {
             Err(format!("threads are 1 to {MAX_THREADS}"))
         }
         Setting::Exposure(stops) if !(-64.0..=64.0).contains(stops) => Err("an exposure is -64 to 64 stops".into()),
+        Setting::Gain(name, factors) => {
+            let fits = factors.iter().all(|factor| (0.0..=MAX_GAIN).contains(factor));
+            short(name).and_then(|()| if fits { Ok(()) } else { Err(format!("factors on light are 0 to {MAX_GAIN}")) })
+        }
         Setting::Integrator(name) | Setting::Sampler(name) | Setting::Tone(name) | Setting::Scheduler(name) => {
             short(name)
         }
@@ -152,5 +158,7 @@ mod tests {
         assert!(!allowed(json!({"setting": {"threads": 100_000}})) && !allowed(json!({"setting": {"samples": 0}})));
         assert!(!allowed(json!({"zoom": 1e39})) && !allowed(json!({"fly": {"up": -1e300}})));
         assert!(!allowed(json!({"setting": {"exposure": 1e30}})));
+        let gain = |factor: f64| allowed(json!({"setting": {"gain": ["key", [factor, 1, 1]]}}));
+        assert!(gain(0.0) && gain(3.5) && !gain(-0.1) && !gain(1e7));
     }
 }

@@ -1,10 +1,10 @@
 //! Worlds to be built: all that takes long, and what is wrong with a scene.
 
 use crate::subject::Subject;
-use juggler::math::Vec3;
-use juggler::scene::{Scene, SceneError};
+use juggler::math::{Rgb, Vec3};
+use juggler::scene::{Names, Scene, SceneError};
 use juggler::tracer::camera::AnyCamera;
-use juggler::{Error, Picture, Settings, View};
+use juggler::{Aov, Error, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,6 +24,8 @@ pub struct Build {
     pub(crate) camera: Option<AnyCamera>,
     /// Cameras that were kept in memory.
     pub(crate) kept: Vec<(String, AnyCamera)>,
+    /// Factors on groups of lights, by name.
+    pub(crate) gains: Vec<(String, Rgb)>,
     /// The subject as it was, whose world may be that of the new one.
     pub(crate) before: Option<(Arc<Scene>, Arc<Picture>)>,
 }
@@ -51,9 +53,9 @@ impl Build {
     /// A scene file, or a built-in scene by name.
     pub fn open(name: &str, size: Option<[u32; 2]>) -> Self {
         let settings = Settings { size, ..Settings::default() };
-        let (values, kept) = (Vec::new(), Vec::new());
+        let (values, kept, gains) = (Vec::new(), Vec::new(), Vec::new());
         let (task, name) = (Task::Open, name.to_owned());
-        Self { task, name, values, frame: 0.0, settings, size, camera: None, kept, before: None }
+        Self { task, name, values, frame: 0.0, settings, size, camera: None, kept, gains, before: None }
     }
 
     /// A scene that a program made.
@@ -79,28 +81,51 @@ impl Build {
             Task::Reload(scene) => self.reload(&scene)?,
             Task::Have(scene) => scene,
         };
-        let mut scene = Arc::clone(&file);
+        let scene = self.scene(&file)?;
+        let size = self.settings.size_of(&scene);
+        if bearable(size) != size {
+            self.settings.size = Some(bearable(size));
+        }
+        // What belongs to groups is kept apart, so that it can be mixed.
+        let groups = Names::of(&scene.description).light_groups.len();
+        self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
+        let mut picture = self.picture(&scene)?;
+        let upward = picture.view().camera.upward();
+        if let Some(camera) = &self.camera {
+            picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
+        }
+        let Self { name, values, frame, settings, size, camera, kept, gains, .. } = self;
+        let (picture, interest, held) = (Arc::new(picture), Vec3::ZERO, false);
+        let mut subject = Subject {
+            name,
+            file,
+            scene,
+            values,
+            frame,
+            settings,
+            size,
+            camera,
+            kept,
+            gains,
+            upward,
+            interest,
+            held,
+            picture,
+        };
+        subject.look_for_interest();
+        Ok(subject)
+    }
+
+    /// The file's scene with the values that were set, at the frame.
+    fn scene(&self, file: &Arc<Scene>) -> Result<Arc<Scene>, SceneError> {
+        let mut scene = Arc::clone(file);
         for (path, value) in &self.values {
             scene = Arc::new(scene.with_value(path, value.clone())?);
         }
         if self.frame != 0.0 {
             scene = Arc::new(scene.at_frame(self.frame)?);
         }
-        let size = self.settings.size_of(&scene);
-        if bearable(size) != size {
-            self.settings.size = Some(bearable(size));
-        }
-        let mut picture = self.picture(&scene)?;
-        let upward = picture.view().camera.upward();
-        if let Some(camera) = &self.camera {
-            picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
-        }
-        let Self { name, values, frame, settings, size, camera, kept, .. } = self;
-        let (picture, interest, held) = (Arc::new(picture), Vec3::ZERO, false);
-        let mut subject =
-            Subject { name, file, scene, values, frame, settings, size, camera, kept, upward, interest, held, picture };
-        subject.look_for_interest();
-        Ok(subject)
+        Ok(scene)
     }
 
     fn picture(&self, scene: &Scene) -> Result<Picture, Error> {

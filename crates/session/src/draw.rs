@@ -2,13 +2,13 @@
 
 use crate::Channel;
 use crate::screen::{Draft, color_of};
-use juggler::Picture;
-use juggler::math::{Ray, UVec2};
-use juggler::tracer::film::Rect;
+use juggler::math::{Ray, Rgb, UVec2};
+use juggler::tracer::film::{Film, Layout, Rect};
 use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, PathState};
-use juggler::tracer::layer::LightGroup;
-use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stopped};
+use juggler::tracer::layer::{self, LightGroup};
+use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stop, Stopped};
 use juggler::tracer::world::{Vertex, World};
+use juggler::{LayerSet, Picture};
 
 /// Numbers of objects, or of materials, as colours.
 enum Numbers {
@@ -26,12 +26,22 @@ impl Integrator for Numbers {
     }
 }
 
+/// The picture with the light of groups times their gains, one sample a pixel.
+fn relit(job: &Job, region: Rect, layers: &LayerSet, gains: &[Rgb], control: &Control) -> Result<Vec<Rgb>, Stopped> {
+    let film = Film::new(Layout::new(region), 0..1);
+    render::expose(job, &film, Stop::Samples, control)?;
+    let mut pixels = vec![Rgb::BLACK; region.area() as usize];
+    film.tiles().for_each(|(_, tile)| tile.pixels().copy(&layers.relit(&tile, gains), &region, &mut pixels));
+    Ok(pixels)
+}
+
 /// Renders `size` pixels of a picture, one ray each, on the threads of the current rayon pool. The channels `samples`
-/// and `noise` are of films: here they are the picture itself.
+/// and `noise` are of films: here they are the picture itself. Where there are `gains`, groups of lights are mixed by them.
 pub fn draw(
     picture: &Picture,
     size: [u32; 2],
     channel: Channel,
+    gains: &[Rgb],
     scheduler: Scheduler,
     control: &Control,
 ) -> Result<Draft, Stopped> {
@@ -48,6 +58,10 @@ pub fn draw(
     };
     let job = Job { camera: &camera, integrator, samples: 1, ..job };
     let region = Rect { x: 0, y: 0, width, height };
+    if !gains.is_empty() && channel.is_light() {
+        return Ok(Draft { size, pixels: relit(&job, region, picture.layers(), gains, control)? });
+    }
+    let job = Job { layers: &layer::NONE, ..job };
     let mut pixels = Vec::new();
     let schedule = Schedule { scheduler, ..Schedule::default() };
     render::render(&job, region, schedule, control, |rows| {

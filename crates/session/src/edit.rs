@@ -121,6 +121,8 @@ pub enum Setting {
     Tone(String),
     /// Photographic stops.
     Exposure(f32),
+    /// Factors on red, green and blue of the light of one group of lights, by name.
+    Gain(String, [f32; 3]),
     /// Another seed, another noise.
     Seed(u64),
     /// Threads that render.
@@ -153,6 +155,11 @@ pub enum Channel {
 }
 
 impl Channel {
+    /// Whether it is of light, and thus of the film.
+    pub fn is_light(self) -> bool {
+        matches!(self, Self::Color | Self::Samples | Self::Noise)
+    }
+
     /// All of them.
     pub const ALL: [Self; 8] = [
         Self::Color,

@@ -11,7 +11,7 @@ use serde::Serialize;
 pub struct Probe {
     /// The pixel, from the top left.
     pub pixel: [u32; 2],
-    /// Linear light, the mean of the samples so far; nothing when there is none.
+    /// Linear light, the mean of the samples so far, groups of lights mixed; nothing when there is none.
     pub color: Option<[f32; 3]>,
     /// Samples so far.
     pub samples: u32,
@@ -45,7 +45,7 @@ impl Probe {
             let area = tile.pixels();
             let at = (y.saturating_sub(area.y) as usize) * area.width as usize + x.saturating_sub(area.x) as usize;
             probe.samples = tile.count();
-            probe.color = tile.means().get(at).filter(|_| tile.count() > 0).map(|color| color.to_array());
+            probe.color = subject.light(&tile).get(at).filter(|_| tile.count() > 0).map(|color| color.to_array());
             probe.noise = relative_error(&tile, at).map(|error| error as f32);
         }
         let center = pixel.map(|at| at as f32 + 0.5);

@@ -48,12 +48,12 @@ impl Worker {
         let (control, began) = (Control::default(), Instant::now());
         // What is ready soon is not disturbed.
         let patience = if self.moved { self.options.budget * 2 } else { Duration::ZERO };
-        let (toner, mut drawn) = (self.toner_of(picture), Err(Stopped));
+        let (toner, gains, mut drawn) = (self.toner_of(picture), subject.gains(), Err(Stopped));
         let (shared, channel, scheduler) = (&self.shared, self.status.channel, self.scheduler);
         shared.desk().done = false;
         self.pool.in_place_scope(|scope| {
             scope.spawn(|_| {
-                drawn = draw(picture, size, channel, scheduler, &control).map(|draft| {
+                drawn = draw(picture, size, channel, &gains, scheduler, &control).map(|draft| {
                     let rgba = toner.picture(&draft.pixels);
                     (draft, rgba)
                 });
@@ -78,11 +78,6 @@ impl Worker {
         true
     }
 
-    /// Whether what is shown is of the film.
-    fn follows_light(&self) -> bool {
-        matches!(self.status.channel, Channel::Color | Channel::Samples | Channel::Noise)
-    }
-
     fn frame(&self, [width, height]: [u32; 2], rgba: Vec<u8>, samples: f32) -> Frame {
         let revision = self.status.revision;
         Frame { number: 0, revision, width, height, rgba, size: self.status.size, samples }
@@ -99,7 +94,7 @@ impl Worker {
     }
 
     fn toner_of(&self, picture: &Picture) -> Toner {
-        let of_light = self.follows_light() || self.status.channel == Channel::Albedo;
+        let of_light = self.status.channel.is_light() || self.status.channel == Channel::Albedo;
         self.toner.toned(if of_light { picture.tone() } else { &screen::PLAIN })
     }
 
@@ -148,12 +143,13 @@ impl Worker {
     /// Shows the film as it is, over the draft.
     fn show(&mut self, samples: f32) {
         let Some(film) = self.film.clone() else { return };
+        let Some(subject) = self.subject.clone() else { return };
         let (size, wanted, toner) = (self.status.size, self.status.samples_wanted, &self.toner);
         let canvas = self.canvas.get_or_insert_with(|| Canvas::new(&self.draft, size, toner));
         // A whole picture through the pixels' centres looks better than one through one place of each.
         let least = if self.draft.size == size { wanted.min(4) } else { 1 };
         match self.status.channel {
-            Channel::Color => canvas.paint(&film, least, |tile| screen::light(toner, tile)),
+            Channel::Color => canvas.paint(&film, least, |tile| screen::light(toner, subject.light(tile))),
             Channel::Samples => canvas.paint(&film, 0, |tile| screen::samples(tile, wanted)),
             Channel::Noise => canvas.paint(&film, 0, screen::noise),
             _ => {}
@@ -166,7 +162,7 @@ impl Worker {
     /// Makes the picture better until something else is to be done; `false` when it cannot get better.
     pub fn refine(&mut self) -> bool {
         let Some(subject) = self.subject.clone() else { return false };
-        if !self.follows_light() && self.draft.size != subject.picture().size() {
+        if !self.status.channel.is_light() && self.draft.size != subject.picture().size() {
             return self.draw_by(&subject, 1) || self.shared.desk().calls();
         }
         if self.film.is_none() {
@@ -222,7 +218,7 @@ impl Worker {
     fn tell_of(&mut self, picture: &Picture, film: &Film, control: &Control, began: Instant) {
         self.count(picture, film);
         self.status.rays_per_second = (control.rays().total() as f64 / began.elapsed().as_secs_f64().max(1e-9)) as f32;
-        if self.follows_light() {
+        if self.status.channel.is_light() {
             self.show(self.status.samples);
         } else {
             self.publish(None);

@@ -130,9 +130,9 @@ impl Canvas {
     }
 }
 
-/// A tile's light.
-pub fn light(toner: &Toner, tile: &Tile) -> Vec<[u8; 4]> {
-    tile.means().into_iter().map(|pixel| toner.rgba(pixel)).collect()
+/// Light, pixel by pixel.
+pub fn light(toner: &Toner, pixels: Vec<Rgb>) -> Vec<[u8; 4]> {
+    pixels.into_iter().map(|pixel| toner.rgba(pixel)).collect()
 }
 
 /// How many of the samples `wanted` a tile has, as a grey.

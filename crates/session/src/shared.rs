@@ -74,7 +74,7 @@ impl Shown {
             let mut pixels: Vec<Rgb> = (band.y..band.y + band.height).flat_map(row).collect();
             for tile in film.layout().in_band(number).filter_map(|tile| film.tile(tile as usize)) {
                 if tile.count() > 0 {
-                    tile.copy_to(&band, &mut pixels);
+                    tile.pixels().copy(&self.subject.light(&tile), &band, &mut pixels);
                 }
             }
             rows(&pixels)?;

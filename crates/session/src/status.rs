@@ -67,6 +67,8 @@ pub struct Status {
     pub tone: String,
     /// Photographic stops.
     pub exposure: f32,
+    /// The scene's groups of lights by name, with the factors on their light; none where it names none.
+    pub light_groups: Vec<(String, [f32; 3])>,
     /// Names of the scene's cameras, bookmarks included.
     pub cameras: Vec<String>,
     /// The camera as scene files describe it.

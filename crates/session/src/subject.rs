@@ -3,17 +3,21 @@
 
 use crate::build::{Build, MOST_PIXELS, Task, text_of};
 use crate::{Edit, Setting, Status, pose};
-use juggler::math::{Aabb, Ray, Vec2, Vec3};
+use juggler::math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::kind::name_of;
 use juggler::scene::{Scene, camera_json, with_camera};
 use juggler::tracer::camera::AnyCamera;
+use juggler::tracer::film::Tile;
 use juggler::tracer::integrator::AnyIntegrator;
 use juggler::tracer::world::Vertex;
 use juggler::{Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// The most that light of a group is made stronger by.
+const MOST_GAIN: f32 = 1e6;
 
 /// What is looked at.
 #[derive(Clone)]
@@ -34,6 +38,8 @@ pub struct Subject {
     pub(crate) camera: Option<AnyCamera>,
     /// Cameras that were kept in memory, by name.
     pub(crate) kept: Vec<(String, AnyCamera)>,
+    /// Factors on groups of lights, by name; 1 for all others.
+    pub(crate) gains: Vec<(String, Rgb)>,
     pub(crate) upward: Vec3,
     pub(crate) interest: Vec3,
     /// Whether the point of interest was chosen, and does not follow the picture's middle.
@@ -110,7 +116,14 @@ impl Subject {
             Edit::Reset => {
                 let settings = Settings { size: self.size, ..Settings::default() };
                 let build = self.build(Task::Have(Arc::clone(&self.file)));
-                Ok(rebuild(Build { values: Vec::new(), frame: 0.0, settings, camera: None, ..build }))
+                Ok(rebuild(Build {
+                    values: Vec::new(),
+                    frame: 0.0,
+                    settings,
+                    camera: None,
+                    gains: Vec::new(),
+                    ..build
+                }))
             }
             Edit::Set { path, value } => {
                 let mut build = self.build(Task::Have(Arc::clone(&self.file)));
@@ -165,6 +178,7 @@ impl Subject {
             size: self.size,
             camera: self.camera.clone(),
             kept: self.kept.clone(),
+            gains: self.gains.clone(),
             before: Some((Arc::clone(&self.scene), Arc::clone(&self.picture))),
         }
     }
@@ -185,6 +199,7 @@ impl Subject {
             Setting::Tone(name) => settings.curve = Some(name.clone()),
             Setting::Exposure(stops) => settings.exposure_stops = Some(*stops),
             Setting::Seed(seed) => settings.seed = Some(*seed),
+            Setting::Gain(group, factors) => return self.relight(group, *factors),
             Setting::Threads(_) | Setting::Scheduler(_) => return Ok(Change::Nothing),
         }
         if matches!(setting, Setting::Integrator(name) if name != "classic") {
@@ -196,6 +211,30 @@ impl Subject {
         self.see(View { camera: self.picture.view().camera, render, tone })?;
         self.settings = settings;
         Ok(Change::View)
+    }
+
+    fn relight(&mut self, group: &str, factors: [f32; 3]) -> Result<Change, String> {
+        let known = self.picture.layers().light_groups();
+        juggler::check_name("group of lights", group, known.iter().map(String::as_str)).map_err(|e| text_of(&e))?;
+        if !factors.iter().all(|factor| (0.0..=MOST_GAIN).contains(factor)) {
+            return Err(format!("error: factors on light are 0 to {MOST_GAIN}"));
+        }
+        self.gains.retain(|(other, _)| other != group);
+        self.gains.push((group.to_owned(), Rgb::from(factors)));
+        Ok(Change::View)
+    }
+
+    /// The factor on each of the picture's groups of lights, by number; nothing where all are 1.
+    pub fn gains(&self) -> Vec<Rgb> {
+        let gain = |group: &String| self.gains.iter().find(|(name, _)| name == group).map_or(Rgb::WHITE, |gain| gain.1);
+        let gains: Vec<Rgb> = self.picture.layers().light_groups().iter().map(gain).collect();
+        if gains.iter().all(|gain| *gain == Rgb::WHITE) { Vec::new() } else { gains }
+    }
+
+    /// The light of a tile of the picture's film, groups of lights mixed as they are to be.
+    pub fn light(&self, tile: &Tile) -> Vec<Rgb> {
+        let gains = self.gains();
+        if gains.is_empty() { tile.means() } else { self.picture.layers().relit(tile, &gains) }
     }
 
     fn see(&mut self, view: View) -> Result<(), String> {
@@ -299,6 +338,11 @@ impl Subject {
         status.sampler = name_of(&render.sampler);
         status.tone = name_of(&tone.curve);
         status.exposure = tone.exposure_stops;
+        let groups = self.picture.layers().light_groups();
+        let gain = |name: &String| {
+            self.gains.iter().find(|(other, _)| other == name).map_or([1.0; 3], |gain| gain.1.to_array())
+        };
+        status.light_groups = groups.iter().map(|name| (name.clone(), gain(name))).collect();
         status.cameras = self.cameras();
         status.camera = camera_json(&camera);
         status.interest = self.interest.to_array();

@@ -12,6 +12,7 @@ mod controls;
 mod help;
 mod keys;
 mod lens;
+mod lights;
 mod overlay;
 mod panel;
 mod picture;

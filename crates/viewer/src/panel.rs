@@ -2,6 +2,7 @@
 
 use crate::controls::{Controls, Mode};
 use crate::keys::Command;
+use crate::lights;
 use crate::overlay;
 use crate::saving::Saving;
 use crate::style;
@@ -81,6 +82,9 @@ impl Panel {
                 section(ui, "Camera", |ui| self.camera(ui, around));
                 section(ui, "Picture", |ui| self.picture(ui, around));
                 section(ui, "Colour", |ui| self.colour(ui, around));
+                if !around.status.light_groups.is_empty() {
+                    section(ui, "Lights", |ui| lights::show(ui, &around.status.light_groups, around.edits));
+                }
                 section(ui, "Show", |ui| channels(ui, around));
                 section(ui, "Threads", |ui| self.threads(ui, around));
                 section(ui, "Save", |ui| save(ui, around));
@@ -194,7 +198,7 @@ fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
 }
 
 /// A name, and beside it what it names.
-fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let (place, _) = ui.allocate_exact_size(vec2(76.0, 22.0), egui::Sense::hover());
         let font = egui::TextStyle::Body.resolve(ui.style());
