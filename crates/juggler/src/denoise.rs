@@ -39,7 +39,7 @@ impl Denoiser {
     }
 }
 
-/// A picture in two halves of its samples, with what guides a filter.
+/// A picture in two halves of its samples, with what guides a filter; twice the same where nobody compares halves.
 #[derive(Clone, Debug)]
 pub struct Guides {
     region: Rect,
@@ -70,7 +70,6 @@ impl Guides {
     /// Takes in the pixels of a tile whose film kept the guides.
     pub fn add(&mut self, set: &LayerSet, tile: &Tile) {
         let (extras, count) = (tile.extras(), tile.count());
-        let counts = half_counts(count);
         let place = |layer| set.layers().place(layer);
         let layers = set.layers().planes.len();
         let (pixels, region) = (tile.pixels(), self.region);
@@ -78,16 +77,18 @@ impl Guides {
             let plane = layer.and_then(|layer| extras.planes.get(pixel * layers + layer));
             plane.copied().unwrap_or(Rgb::BLACK)
         };
+        let means = tile.means();
+        let halves = |pixel: usize, whole: Rgb, guide: Guide| match place(Layer::Half(guide)) {
+            Some(place) => {
+                let one = sum(pixel, Some(place));
+                Halves { sums: [one, whole - one], counts: half_counts(count) }
+            }
+            None => Halves { sums: [whole; 2], counts: [count as f32; 2] },
+        };
         for half in [0, 1] {
-            let halves = |pixel: usize, whole: Rgb, guide: Guide| {
-                let one = sum(pixel, place(Layer::Half(guide)));
-                Halves { sums: [one, whole - one], counts }
-            };
             let all = 0..pixels.area() as usize;
-            let means = tile.means();
-            let mean = |pixel: &Rgb| *pixel * count as f32;
             let color = all.clone().map(|pixel| {
-                let whole = means.get(pixel).map_or(Rgb::BLACK, mean);
+                let whole = means.get(pixel).map_or(Rgb::BLACK, |mean| *mean * count as f32);
                 halves(pixel, whole, Guide::Color).mean(half)
             });
             pixels.copy(&color.collect::<Vec<_>>(), &region, &mut self.color[half]);

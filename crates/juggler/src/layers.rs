@@ -159,7 +159,8 @@ impl LayerSet {
         let mut planes: Vec<Layer> = Vec::new();
         let guide = Guide::ALL.into_iter().flat_map(|guide| {
             let whole = (guide != Guide::Color).then_some(Layer::Guide(guide));
-            whole.into_iter().chain([Layer::Half(guide)])
+            let half = (denoiser == Some(Denoiser::Own)).then_some(Layer::Half(guide));
+            whole.into_iter().chain(half)
         });
         let needed = wanted.iter().flat_map(|aov| aov.needs(names));
         for layer in needed.chain(guide.filter(|_| denoiser.is_some())) {

@@ -239,15 +239,17 @@ impl Picture {
     pub fn job(&self) -> Job<'_> {
         let settings = &self.compiled.settings;
         let samples = self.limit.spread_over(settings.samples);
+        let layers = self.layers.layers();
+        let of_stream = if layers.has_halves() { samples.div_ceil(2) } else { samples };
         Job {
             world: &self.compiled.world,
             camera: &self.shot,
             integrator: &*settings.integrator,
             filter: settings.filter.filter(samples),
-            pattern: settings.sampler.pattern(samples),
+            pattern: settings.sampler.pattern(of_stream),
             samples,
             seed: settings.seed,
-            layers: self.layers.layers(),
+            layers,
         }
     }
 

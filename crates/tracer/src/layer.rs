@@ -79,14 +79,20 @@ impl Layers {
         self.planes.is_empty() && !self.masks
     }
 
+    /// Whether halves of the samples are compared: each then has a stream of numbers of its own. Halves of one sequence balance each
+    /// other, so that they differ by more than the whole is wrong.
+    pub fn has_halves(&self) -> bool {
+        self.planes.iter().any(|layer| matches!(layer, Layer::Half(_)))
+    }
+
     /// Which of the planes it is.
     pub fn place(&self, layer: Layer) -> Option<usize> {
         self.planes.iter().position(|other| *other == layer)
     }
 }
 
-/// Whether a sample is in the half that [`Layer::Half`] keeps: one of two neighbours always is, and of the points of a
-/// low-discrepancy sequence both halves are as well spread (the sequence of Thue and Morse).
+/// Whether a sample is in the half that [`Layer::Half`] keeps: one of two neighbours, 2k and 2k + 1, always is (the sequence of
+/// Thue and Morse).
 pub fn is_half(sample: u32) -> bool {
     sample.count_ones() % 2 == 1
 }

@@ -3,6 +3,7 @@
 use super::{Job, Work};
 use crate::camera::LANES;
 use crate::integrator::{Cone, PathState, Queue, Trail};
+use crate::layer::is_half;
 use crate::sampler::Sampler;
 use juggler_math::{Rgb, UVec2, Vec2};
 use std::ops::Range;
@@ -14,6 +15,8 @@ const FILM: u32 = 1;
 const LENS: u32 = 1;
 /// The dimension of a sample's time, beyond all that paths come to: still pictures do without it.
 const TIME: u32 = 1 << 31;
+/// The stream of the second half of the samples, where halves are compared.
+const HALF: u32 = 1 << 31;
 
 /// How wide camera rays are, in pixels. Samples of a pixel lie apart from each other, and what they mix need not be smoothed
 /// twice.
@@ -38,7 +41,8 @@ pub fn start(job: &Job) -> Start {
 
 /// The rays of the samples `slots` of all samples of `work`, `samples` a pixel, pixel by pixel; they begin with `start`.
 pub fn expose(job: &Job, start: &Start, work: &Work, samples: u64, slots: Range<u64>, queue: &mut Queue) {
-    let picture = Picture { job, start, sampler: Sampler::new(job.pattern, job.seed) };
+    let (sampler, halves) = (Sampler::new(job.pattern, job.seed), job.layers.has_halves());
+    let picture = Picture { job, start, sampler, halves };
     if job.samples == 1 {
         return expose_centers(&picture, work, slots, queue);
     }
@@ -83,6 +87,8 @@ struct Picture<'j> {
     job: &'j Job<'j>,
     start: &'j Start,
     sampler: Sampler,
+    /// Whether halves of the samples are compared.
+    halves: bool,
 }
 
 /// One pixel of the film.
@@ -91,6 +97,8 @@ struct Pixel<'j> {
     start: &'j Start,
     center: Vec2,
     stream: Sampler,
+    /// That of the second half of the samples, where it has its own.
+    second: Option<Sampler>,
     /// Whether time makes a difference.
     moves: bool,
 }
@@ -104,15 +112,20 @@ impl<'j> Pixel<'j> {
 
     /// The pixel at this place in the work's rectangle.
     fn new(picture: &Picture<'j>, work: &Work, place: UVec2) -> Self {
-        let Picture { job, start, sampler } = picture;
+        let Picture { job, start, sampler, halves } = picture;
         let pixel = UVec2::new(work.pixels.x, work.pixels.y).wrapping_add(place);
         let moves = job.camera.moves() || job.world.moves();
-        Self { job, start, center: pixel.as_vec2() + 0.5, stream: sampler.pixel(pixel), moves }
+        let stream = sampler.pixel(pixel);
+        let second = halves.then(|| stream.branch(HALF));
+        Self { job, start, center: pixel.as_vec2() + 0.5, stream, second, moves }
     }
 
     /// The numbers of a sample from `dimension` on.
     fn sampler(&self, sample: u32, dimension: u32) -> Sampler {
-        let mut sampler = self.stream.sample(sample);
+        let mut sampler = match &self.second {
+            None => self.stream.sample(sample),
+            Some(second) => (if is_half(sample) { second } else { &self.stream }).sample(sample / 2),
+        };
         sampler.skip(dimension);
         sampler
     }
@@ -143,7 +156,12 @@ impl<'j> Pixel<'j> {
         for start in slots.clone().step_by(PLACES) {
             let count = PLACES.min((slots.end - start) as usize);
             let first = first + (start - slots.start);
-            self.stream.first_points(first, &mut places[..count.next_multiple_of(LANES)]);
+            let drawn = &mut places[..count.next_multiple_of(LANES)];
+            if self.second.is_none() {
+                self.stream.first_points(first, drawn);
+            } else {
+                (first..).zip(drawn).for_each(|(sample, place)| *place = self.sampler(sample, 0).next_2d());
+            }
             for (group, places) in places[..count].chunks(LANES).enumerate() {
                 let skipped = (group * LANES) as u32;
                 self.group(first + skipped, start + skipped, places, queue);
