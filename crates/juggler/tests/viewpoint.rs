@@ -15,13 +15,13 @@ const CAMERAS: [&str; 3] = [
     r#"{"thin_lens": {"eye": [3, 2.5, 6], "look_at": [0.2, 0.4, 0], "lens_radius": 0, "focus_distance": 3}}"#,
 ];
 
-fn picture(camera: &str, settings: Settings) -> Picture {
+fn picture(camera: &str, settings: &Settings) -> Picture {
     let text = format!(
         r#"{{"version": 1, "render": {{"size": [60, 44], "samples": 16, "integrator": "path", "filter": "box"}},
             "camera": {camera}, "lights": [{{"point": {{"position": [4, 6, 4]}}}}],
             "objects": [{{"shape": "plane"}}, {{"shape": "sphere", "transform": [{{"translate": [0, 1, 0]}}]}}]}}"#
     );
-    Picture::new(&Scene::from_json(text, "test").unwrap(), &settings).unwrap()
+    Picture::new(&Scene::from_json(text, "test").unwrap(), settings).unwrap()
 }
 
 /// A point as a row before a matrix.
@@ -36,7 +36,7 @@ fn what_a_pixel_shows_is_projected_into_that_pixel() {
     let crop = Some(Rect { x: 7, y: 5, width: 40, height: 30 });
     for (camera, crop) in CAMERAS.iter().flat_map(|camera| [(camera, None), (camera, crop)]) {
         let aovs = vec![Aov::Position, Aov::Alpha];
-        let picture = picture(camera, Settings { aovs, crop, ..Settings::default() });
+        let picture = picture(camera, &Settings { aovs, crop, ..Settings::default() });
         let film = picture.film();
         picture.expose(&film, &Control::default()).unwrap();
         let tiles: Vec<_> = film.tiles().map(|(_, tile)| tile).collect();
@@ -59,7 +59,7 @@ fn what_a_pixel_shows_is_projected_into_that_pixel() {
 #[test]
 fn known_points_are_where_they_are_known_to_be() {
     for camera in CAMERAS {
-        let viewpoint = picture(camera, Settings::default()).viewpoint().unwrap();
+        let viewpoint = picture(camera, &Settings::default()).viewpoint().unwrap();
         let centre = times(Vec3::new(0.2, 0.4, 0.0), &viewpoint.world_to_ndc);
         let ahead = times(Vec3::new(0.2, 0.4, 0.0), &viewpoint.world_to_camera);
         let eye = times(Vec3::new(3.0, 2.5, 6.0), &viewpoint.world_to_camera);

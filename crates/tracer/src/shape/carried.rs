@@ -50,7 +50,7 @@ mod tests {
     fn points_keep_their_places_on_what_grows_and_bends() {
         let ball = |radius| AnyShape::from(Sphere { radius });
         let point = Vec3::new(0.0, 1.2, 1.6);
-        assert_eq!(ball(2.0).carried(&ball(3.0), 0, point, 0.0), Vec3::new(0.0, 1.8, 2.4));
+        assert!(close3(ball(2.0).carried(&ball(3.0), 0, point, 0.0), Vec3::new(0.0, 1.8, 2.4), 1e-6));
         assert_eq!(ball(2.0).carried(&ball(2.0), 0, point, 0.0), point);
         let (flat, bent) = (
             mesh([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
