@@ -136,3 +136,15 @@ fn samples_that_a_limit_cuts_are_counted() {
     let all = limits(r#", "clamp_direct": 1e-5, "clamp_indirect": 1e-5"#);
     assert!(all.iter().all(|count| *count > 0.0), "{all:?}");
 }
+
+#[test]
+fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
+    let card = r#""translate": [-0.485, 0, 1]}], "material": "red"}"#;
+    let holes = r#""translate": [-0.485, 0, 1]}], "material": {"mask": {"opacity": 0, "material": "red"}}}"#;
+    let scene = SCENE.replace(card, holes);
+    assert!(scene != SCENE);
+    let (found, _) = layers(&scene, &[Aov::Depth, Aov::ObjectId]);
+    let pixel = at(-0.4, 0.1);
+    assert_eq!(found["object_id.Y"][pixel], 1.0);
+    assert!((found["depth.Z"][pixel] - 4.0).abs() < 1e-5, "{}", found["depth.Z"][pixel]);
+}

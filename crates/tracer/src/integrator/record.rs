@@ -21,6 +21,8 @@ pub(crate) struct Record {
     color: Option<usize>,
     /// What the filter makes of each sample.
     weights: Vec<f32>,
+    /// How far the camera's ray of each has come through holes.
+    passed: Vec<f32>,
     /// Whether it is known what denoising of each sample is guided by.
     is_guided: Vec<bool>,
     /// As many a sample as there are layers.
@@ -49,6 +51,7 @@ impl Record {
             groups,
             color,
             weights: Vec::new(),
+            passed: Vec::new(),
             is_guided: Vec::new(),
             planes: Vec::new(),
             marks: Vec::new(),
@@ -59,6 +62,8 @@ impl Record {
     pub fn begin(&mut self, weights: impl Iterator<Item = f32>) {
         self.weights.clear();
         self.weights.extend(weights);
+        self.passed.clear();
+        self.passed.resize(self.weights.len(), 0.0);
         self.is_guided.clear();
         self.is_guided.resize(self.weights.len(), false);
         self.planes.clear();
@@ -93,7 +98,7 @@ impl Record {
                 Layer::Albedo => albedo,
                 Layer::Normal => color(normal),
                 Layer::GeometricNormal => color(surface.normal),
-                Layer::Depth => Rgb::new(ray.t_max, 1.0, 0.0),
+                Layer::Depth => Rgb::new(self.passed[slot] + ray.t_max, 1.0, 0.0),
                 Layer::Position => color(surface.point),
                 Layer::Motion(which) => {
                     match self.frames.as_deref().and_then(|frames| frames.way(which, sight.world, vertex, ray.time)) {
@@ -170,6 +175,13 @@ impl Emit<'_> {
     #[inline]
     pub fn records(&self) -> bool {
         self.harvest.record.is_some()
+    }
+
+    /// Records that the path goes on through a hole as if nothing had been there.
+    pub fn pass(&mut self, ray: &Ray) {
+        if let Some(record) = self.harvest.record.as_mut().filter(|_| self.path.depth == 0) {
+            record.passed[self.path.slot as usize] += ray.t_max;
+        }
     }
 
     /// Records that the path met nothing.
