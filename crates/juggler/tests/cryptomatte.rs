@@ -106,10 +106,10 @@ fn murmur3(text: &str) -> u32 {
     for block in bytes.chunks(4) {
         let mut word = (0..block.len()).fold(0, |word, i| word | u32::from(block[i]) << (8 * i));
         word = word.wrapping_mul(0xcc9e_2d51);
-        word = (word << 15 | word >> 17).wrapping_mul(0x1b87_3593);
+        word = word.rotate_left(15).wrapping_mul(0x1b87_3593);
         hash ^= word;
         if block.len() == 4 {
-            hash = (hash << 13 | hash >> 19).wrapping_mul(5).wrapping_add(0xe654_6b64);
+            hash = hash.rotate_left(13).wrapping_mul(5).wrapping_add(0xe654_6b64);
         }
     }
     hash ^= bytes.len() as u32;
