@@ -1,9 +1,11 @@
 //! `--stats`: one JSON object about a render, with the keys that other people's scripts read.
 
+use juggler::imaging::Viewpoint;
 use juggler::tracer::film::Summary;
 use juggler::tracer::render::Rays;
 use juggler::{Outcome, Picture};
 use serde::Serialize;
+use serde_json::Value;
 
 /// All of it.
 #[derive(Debug, Serialize)]
@@ -19,6 +21,8 @@ pub struct Stats<'s> {
     geometry: Geometry,
     memory: Memory,
     film: Film<'s>,
+    /// From where the picture was taken.
+    camera: Value,
     fingerprint: String,
 }
 
@@ -123,6 +127,7 @@ impl<'s> Stats<'s> {
                 bvh_bytes: geometry.bvh_bytes,
             },
             film: Film { mean: film.mean, hash: &film.hash, clamped: picture.is_clamped().then(|| Clamped::of(film)) },
+            camera: camera(picture.viewpoint().as_ref()),
             fingerprint: picture.fingerprint().hash(),
         }
     }
@@ -136,6 +141,12 @@ impl<'s> Stats<'s> {
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
+}
+
+/// From where a picture was taken: its matrices, each number as short as singles allow.
+pub fn camera(viewpoint: Option<&Viewpoint>) -> Value {
+    let text = serde_json::to_string(&viewpoint).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
 }
 
 /// Rays a second of rendering.

@@ -55,6 +55,7 @@ fn description(samples: u32, share: Share) -> Description {
         fingerprint: Default::default(),
         tone: serde_json::Value::Null,
         metadata: Vec::new(),
+        viewpoint: None,
     }
 }
 

@@ -26,6 +26,7 @@ pub fn description(region: Rect, samples: u32) -> Description {
         fingerprint: [("scene", "5ce4e"), ("seed", "7")].map(|(k, v)| (k.to_owned(), v.to_owned())).into(),
         tone: serde_json::json!({"curve": {"srgb": {}}, "exposure_stops": 0.1}),
         metadata: vec![("Software".into(), "Juggler 0.0.0".into())],
+        viewpoint: None,
     }
 }
 

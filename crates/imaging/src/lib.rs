@@ -28,6 +28,7 @@ pub mod look;
 pub mod output;
 pub mod raster;
 pub mod tone;
+mod viewpoint;
 
 pub use animation::{AnimationFormat, AnimationHeader, FrameWriter, animation_writer, create_animation};
 pub use codec::{ExrCompression, Facts, Header, Options, RowWriter, SampleDepth, writer};
@@ -40,3 +41,4 @@ pub use look::Look;
 pub use output::{Destination, create, to_standard_output, write_image};
 pub use raster::{Encoding, Layout, Raster, Samples, decode_raster, inspect_raster};
 pub use tone::{AnyCurve, Primaries, Tone, WhiteBalance};
+pub use viewpoint::{Matrix4, Viewpoint};

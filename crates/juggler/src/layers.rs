@@ -8,7 +8,7 @@ use juggler_film::part::Layered;
 use juggler_imaging::Header;
 use juggler_imaging::layered::{LayerHeader, LayeredHeader};
 use juggler_scene::Names;
-use juggler_tracer::layer::{Guide, Layer, Layers, LightGroup};
+use juggler_tracer::layer::{Beside, Guide, Layer, Layers, LightGroup};
 use juggler_tracer::material::MaterialId;
 
 /// Something that can be asked for beside the picture.
@@ -28,6 +28,10 @@ pub enum Aov {
     Position,
     /// Its surface coordinates.
     Uv,
+    /// How far it goes on the film until the next frame, in pixels, x to the right and y down.
+    Motion,
+    /// The same to the frame before.
+    MotionBack,
     /// Light that what is seen gives off, and the background.
     Emission,
     /// Light that lights send to what is seen.
@@ -52,11 +56,13 @@ pub enum Aov {
     Variance,
     /// How many samples were no finite numbers.
     NotFinite,
+    /// How many samples a limit on contributions has cut.
+    Clamped,
 }
 
 impl Aov {
     /// All, in the order in which they stand in a file.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 22] = [
         Self::Alpha,
         Self::Albedo,
         Self::Normal,
@@ -64,6 +70,8 @@ impl Aov {
         Self::Depth,
         Self::Position,
         Self::Uv,
+        Self::Motion,
+        Self::MotionBack,
         Self::Emission,
         Self::Direct,
         Self::Indirect,
@@ -76,6 +84,7 @@ impl Aov {
         Self::Samples,
         Self::Variance,
         Self::NotFinite,
+        Self::Clamped,
     ];
 
     /// As it is asked for.
@@ -88,6 +97,8 @@ impl Aov {
             Self::Depth => "depth",
             Self::Position => "position",
             Self::Uv => "uv",
+            Self::Motion => "motion",
+            Self::MotionBack => "motion_back",
             Self::Emission => "emission",
             Self::Direct => "direct",
             Self::Indirect => "indirect",
@@ -100,6 +111,7 @@ impl Aov {
             Self::Samples => "samples",
             Self::Variance => "variance",
             Self::NotFinite => "not_finite",
+            Self::Clamped => "clamped",
         }
     }
 
@@ -113,13 +125,15 @@ impl Aov {
     /// What the film must keep for it.
     fn needs(self, names: &Names) -> Vec<Layer> {
         match self {
-            Self::Alpha | Self::NotFinite => vec![Layer::Coverage],
+            Self::Alpha | Self::NotFinite | Self::Clamped => vec![Layer::Coverage],
             Self::Albedo => vec![Layer::Albedo],
             Self::Normal => vec![Layer::Normal],
             Self::GeometricNormal => vec![Layer::GeometricNormal],
             Self::Depth => vec![Layer::Depth],
             Self::Position => vec![Layer::Position, Layer::Coverage],
             Self::Uv => vec![Layer::Uv],
+            Self::Motion => vec![Layer::Motion(Beside::Next)],
+            Self::MotionBack => vec![Layer::Motion(Beside::Previous)],
             Self::Emission => vec![Layer::Emission],
             Self::Direct => vec![Layer::Direct],
             Self::Indirect => vec![Layer::Indirect],
@@ -214,6 +228,7 @@ impl LayerSet {
             objects: self.names.objects.clone(),
             materials: self.names.materials.iter().map(|(id, name)| (id.0, name.clone())).collect(),
             light_groups: self.names.light_groups.clone(),
+            beside: String::new(),
         }
     }
 
@@ -238,13 +253,7 @@ impl LayerSet {
     /// What a file of the layers says, beside what `header` says of the picture; with the picture itself if that is wanted.
     pub fn file_header(&self, header: &Header, with_picture: bool) -> LayeredHeader {
         let picture = with_picture.then(|| LayerHeader::beauty(header.options.exr_depth));
-        LayeredHeader {
-            width: header.width,
-            height: header.height,
-            layers: picture.into_iter().chain(self.headers()).collect(),
-            compression: header.options.exr_compression,
-            metadata: header.metadata.clone(),
-        }
+        LayeredHeader::new(header, picture.into_iter().chain(self.headers()).collect())
     }
 
     /// The layers of a file, in order, without the picture itself.
@@ -254,14 +263,17 @@ impl LayerSet {
 
     fn headers_of(&self, aov: Aov) -> Vec<LayerHeader> {
         let channels: &[&str] = match aov {
-            Aov::Albedo | Aov::Emission | Aov::Direct | Aov::Indirect | Aov::Variance => &["R", "G", "B"],
+            Aov::Albedo | Aov::Emission | Aov::Direct | Aov::Indirect => return vec![LayerHeader::color(aov.name())],
+            // No colour: what primaries of others made of it would need how the channels go together.
+            Aov::Variance => &["R", "G", "B"],
             Aov::Normal | Aov::GeometricNormal | Aov::Position => &["X", "Y", "Z"],
             Aov::Alpha => &["A"],
             Aov::Depth => &["Z"],
             Aov::Uv => &["U", "V"],
-            Aov::ObjectId | Aov::MaterialId | Aov::InstanceId | Aov::Samples | Aov::NotFinite => &["Y"],
+            Aov::Motion | Aov::MotionBack => &["X", "Y"],
+            Aov::ObjectId | Aov::MaterialId | Aov::InstanceId | Aov::Samples | Aov::NotFinite | Aov::Clamped => &["Y"],
             Aov::LightGroups => {
-                let group = |name: &String| LayerHeader::new(&format!("light_group_{name}"), &["R", "G", "B"]);
+                let group = |name: &String| LayerHeader::color(&format!("light_group_{name}"));
                 return self.names.light_groups.iter().map(group).collect();
             }
             Aov::CryptoObject => {

@@ -24,6 +24,7 @@
 
 pub mod denoise;
 mod error;
+mod frames;
 mod kinds;
 pub mod layers;
 pub mod memory;
@@ -31,6 +32,7 @@ mod part;
 mod picture;
 pub mod prelude;
 mod settings;
+mod viewpoint;
 
 pub use denoise::Denoiser;
 pub use error::Error;

@@ -1,5 +1,6 @@
 //! How much memory a render takes, told before it starts; and how it takes less.
 
+use crate::frames;
 use crate::{Error, LayerSet, Picture, Settings};
 use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
 use juggler_scene::import;
@@ -22,6 +23,9 @@ const SHADOW: u64 = 96;
 const OBJECT: u64 = 640;
 /// Bytes of a triangle that stands in the scene itself, while the world is built.
 const TRIANGLE: u64 = 160;
+
+/// What worlds are called that stand beside the one that is rendered.
+const BESIDE: &str = "the scene at the frames beside";
 
 /// Something that takes memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,6 +100,8 @@ impl Memory {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the picture `{name}`"), estimate.kept));
         }
+        let more = frames::more_worlds(scene, &settings.aovs);
+        world.push(part(BESIDE, more.saturating_mul(of_scene(&needs))));
         building.extend_from_slice(world.get(2..).unwrap_or_default());
         building.push(part("reading files and building trees", most));
         Ok(Self {
@@ -119,6 +125,9 @@ impl Memory {
         self.world.truncate(1);
         self.world.extend(world);
         self.world.push(part("trees", geometry.bvh_bytes as u64));
+        // Meshes that keep their shape are held once; they are counted here all the same.
+        let more = picture.worlds_beside().saturating_mul(geometry.geometry_bytes.saturating_add(geometry.bvh_bytes));
+        self.world.push(part(BESIDE, more as u64));
         self.world.push(part("textures", geometry.texture_bytes as u64));
         self.world.push(part("the background", geometry.background_bytes as u64));
         self.building.clear();

@@ -2,7 +2,7 @@
 
 use crate::denoise::Guides;
 use crate::{Error, Limit, Picture};
-use juggler_film::part::{Description, Share, Stop};
+use juggler_film::part::{Description, Layered, Share, Stop};
 use juggler_imaging::layered::LayeredWriter;
 use juggler_imaging::{Header, RowWriter};
 use juggler_math::Rgb;
@@ -106,12 +106,13 @@ impl Picture {
             samples: self.samples(),
             stop: self.end(),
             clamped: self.is_clamped(),
-            layers: self.layers().to_part(),
+            layers: Layered { beside: self.beside().to_owned(), ..self.layers().to_part() },
             share,
             finished: false,
             fingerprint: self.fingerprint().parts().clone(),
             tone: serde_json::to_value(self.tone()).unwrap_or_default(),
             metadata: header.metadata.clone(),
+            viewpoint: header.viewpoint,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One picture, from the scene to the file: what the program, Rust and all other users share.
 
+use crate::frames::FramesBeside;
 use crate::{Error, LayerSet, Limit, Settings};
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
@@ -30,6 +31,7 @@ pub struct Picture {
     of_scene: Fingerprint,
     band_pixels: u64,
     layers: Arc<LayerSet>,
+    beside: FramesBeside,
 }
 
 /// From where a world is looked at, and how: all that can change without building it anew.
@@ -61,20 +63,20 @@ pub struct Outcome {
 impl Picture {
     /// Builds the world for a scene and what is wished for beyond it.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let scene = settings.apply(scene)?;
-        let compiled = scene.compile()?;
-        Self::of(&scene, settings, compiled)
+        let wished = settings.apply(scene)?;
+        let compiled = wished.compile()?;
+        Self::of(scene, &wished, settings, compiled)
     }
 
     /// The same with the world of this picture, which must be that of the scene too: [`Scene::has_world_of`].
     pub fn again(&self, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let scene = settings.apply(scene)?;
-        let compiled = scene.compile_with(&self.compiled)?;
-        Self::of(&scene, settings, compiled)
+        let wished = settings.apply(scene)?;
+        let compiled = wished.compile_with(&self.compiled)?;
+        Self::of(scene, &wished, settings, compiled)
     }
 
-    /// `scene` is as it is wished for, and `compiled` what became of it.
-    fn of(scene: &Scene, settings: &Settings, compiled: Compiled) -> Result<Self, Error> {
+    /// `scene` is as it is wished for, and `compiled` what became of it; `plain` is what it was.
+    fn of(plain: &Scene, scene: &Scene, settings: &Settings, compiled: Compiled) -> Result<Self, Error> {
         let [width, height] = scene.description.render.size;
         let region = settings.region([width, height])?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
@@ -83,8 +85,10 @@ impl Picture {
         of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
         let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser, &compiled.names));
+        let beside = FramesBeside::of(plain, settings, &compiled, &shot, &layers)?;
         let band_pixels = BAND_PIXELS;
-        let mut picture = Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels, layers };
+        let mut picture =
+            Self { shot, region, tone, limit, fingerprint, of_scene, compiled, band_pixels, layers, beside };
         picture.complete_fingerprint();
         Ok(picture)
     }
@@ -99,7 +103,8 @@ impl Picture {
         }
     }
 
-    /// The same world looked at otherwise: all of it, until its samples are there. The camera's name stays.
+    /// The same world looked at otherwise: all of it, until its samples are there. The camera's name stays. Layers that tell where
+    /// things go are those of a camera that stands still.
     pub fn seen(&self, view: View) -> Result<Self, Error> {
         let mut scene = Scene::new();
         let description = &mut scene.description;
@@ -122,6 +127,7 @@ impl Picture {
         }
         let shot = picture.compiled.shot(UVec2::new(width, height));
         picture.shot = shot.map_err(|error| Error::Settings(error.to_string()))?;
+        picture.beside = self.beside.seen_from(&picture.shot);
         picture.of_scene = self.of_scene.seen_as(&scene.fingerprint());
         picture.of_scene.set_camera(&view.camera, &picture.compiled.course);
         picture.fingerprint = picture.of_scene.clone();
@@ -227,12 +233,23 @@ impl Picture {
             let limits: Vec<String> = limits.map(|(light, limit)| format!("{light} light at {limit}")).collect();
             metadata.push(text("Clamping", &limits.join(", ")));
         }
-        Header { tone: self.tone.clone(), options, metadata, ..Header::new(width, height) }
+        let viewpoint = self.viewpoint();
+        Header { tone: self.tone.clone(), options, metadata, viewpoint, ..Header::new(width, height) }
     }
 
     /// What is asked for beside it.
     pub fn layers(&self) -> &LayerSet {
         &self.layers
+    }
+
+    /// A hash of what the scene is at the frames beside, where its layers tell of that and it changes; else empty.
+    pub(crate) fn beside(&self) -> &str {
+        &self.beside.fingerprint
+    }
+
+    /// How many worlds it holds but its own.
+    pub(crate) fn worlds_beside(&self) -> usize {
+        self.beside.frames.as_ref().map_or(0, |frames| frames.worlds_beside(self.world()))
     }
 
     /// The engine's view of it.
@@ -250,6 +267,7 @@ impl Picture {
             samples,
             seed: settings.seed,
             layers,
+            frames: self.beside.frames.as_ref(),
         }
     }
 

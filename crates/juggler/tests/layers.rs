@@ -120,3 +120,31 @@ fn masks_are_the_exact_shares_of_pixels() {
     assert_eq!((ranks[0].0, ranks[1].0), (0x7405_f6ae, 0xf160_40d1));
     assert_eq!(found["CryptoObject00.R"][at(0.1, 0.0)].to_bits(), 0x7405_f6ae);
 }
+
+#[test]
+fn samples_that_a_limit_cuts_are_counted() {
+    let limits = |limits: &str| {
+        let scene = SCENE.replace(r#""max_depth": 4"#, &format!(r#""max_depth": 4 {limits}"#));
+        layers(&scene, &[Aov::Clamped, Aov::NotFinite]).0["clamped.Y"].clone()
+    };
+    let cut = limits(r#", "clamp_direct": 1.5"#);
+    // The lamp shines with 3, all else is darker; a limit of infinity is none, and one of next to nothing cuts what is lit.
+    assert_eq!((cut[at(0.5, 0.4)], cut[at(0.9, 0.9)], cut[at(0.1, 0.05)]), (SAMPLES as f32, 0.0, 0.0));
+    let edge: Vec<f32> = cut.iter().copied().filter(|count| *count > 0.0 && *count < SAMPLES as f32).collect();
+    assert!(edge.len() > 8 && edge.iter().all(|count| count.fract() == 0.0), "{edge:?}");
+    assert!(limits("").iter().all(|count| *count == 0.0));
+    let all = limits(r#", "clamp_direct": 1e-5, "clamp_indirect": 1e-5"#);
+    assert!(all.iter().all(|count| *count > 0.0), "{all:?}");
+}
+
+#[test]
+fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
+    let card = r#""translate": [-0.485, 0, 1]}], "material": "red"}"#;
+    let holes = r#""translate": [-0.485, 0, 1]}], "material": {"mask": {"opacity": 0, "material": "red"}}}"#;
+    let scene = SCENE.replace(card, holes);
+    assert!(scene != SCENE);
+    let (found, _) = layers(&scene, &[Aov::Depth, Aov::ObjectId]);
+    let pixel = at(-0.4, 0.1);
+    assert_eq!(found["object_id.Y"][pixel], 1.0);
+    assert!((found["depth.Z"][pixel] - 4.0).abs() < 1e-5, "{}", found["depth.Z"][pixel]);
+}

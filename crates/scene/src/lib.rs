@@ -10,6 +10,7 @@
 
 pub mod animate;
 mod bookmark;
+mod building;
 pub mod compile;
 pub mod description;
 pub mod document;

@@ -6,7 +6,7 @@
 /// A layer of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
-    /// How much of the pixel shows anything; second, how many samples were no finite numbers.
+    /// How much of the pixel shows anything; second, how many samples were no finite numbers; third, how many were clamped.
     Coverage,
     /// The colour that what is seen has without light.
     Albedo,
@@ -20,6 +20,9 @@ pub enum Layer {
     Position,
     /// Its surface coordinates; third, how much of the pixel shows anything.
     Uv,
+    /// How far what is seen goes on the film to another frame, in pixels, x to the right and y down; third, of how much of the
+    /// pixel that is known.
+    Motion(Beside),
     /// Light that what is seen gives off, and the background.
     Emission,
     /// Light that lights send to what is seen.
@@ -32,6 +35,15 @@ pub enum Layer {
     Guide(Guide),
     /// The same of one half of the samples, so that noise shows as what both halves differ by.
     Half(Guide),
+}
+
+/// One of the frames beside the one that is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside {
+    /// The one before.
+    Previous,
+    /// The one after.
+    Next,
 }
 
 /// Lights that are kept apart from others, by number.

@@ -22,6 +22,7 @@ pub mod bsdf;
 pub mod camera;
 pub mod emitter;
 pub mod film;
+pub mod frames;
 pub mod integrator;
 pub mod layer;
 pub mod light;

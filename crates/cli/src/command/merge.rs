@@ -6,7 +6,7 @@ use crate::format::{bytes, clamping, counted, duration};
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::layers::{self, Place};
 use crate::plan::{Encoding, PART_ENDING};
-use crate::stats::Clamped;
+use crate::stats::{self, Clamped};
 use clap::Args;
 use juggler::denoise::Guides;
 use juggler::film::{self, Description, Wanted};
@@ -100,10 +100,11 @@ impl Merge {
     }
 
     fn picture(&self, merge: &film::Merge, Encoding { format, options }: Encoding) -> Result<Summary, Failure> {
-        let Description { region, tone, metadata, .. } = merge.description();
+        let Description { region, tone, metadata, viewpoint, .. } = merge.description();
+        let (metadata, viewpoint) = (metadata.clone(), *viewpoint);
         let tone: Tone = serde_json::from_value(tone.clone())
             .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
-        let header = Header { tone, options, metadata: metadata.clone(), ..Header::new(region.width, region.height) };
+        let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
         let set = LayerSet::of_part(&merge.description().layers)?;
         let mut layers = self.layers(&set, &header)?;
         let with_picture = layers.as_ref().is_some_and(|(_, with_picture)| *with_picture);
@@ -191,6 +192,7 @@ impl Merge {
             "size": [picture.region.width, picture.region.height],
             "samples": picture.samples,
             "finished": picture.finished,
+            "camera": stats::camera(picture.viewpoint.as_ref()),
             "parts": self.parts.len(),
             "seconds": {"total": seconds},
             "film": film,

@@ -50,7 +50,7 @@ impl Relight {
         let Encoding { format, options } =
             Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
         let merge = film::Merge::open(&self.films, Wanted::Whole)?;
-        let Description { region, tone, metadata, layers, .. } = merge.description();
+        let Description { region, tone, metadata, layers, viewpoint, .. } = merge.description();
         let set = LayerSet::of_part(layers)?;
         let gains = gains(&self.gain, &set)?;
         let mut tone: Tone = serde_json::from_value(tone.clone())
@@ -58,7 +58,8 @@ impl Relight {
         tone.exposure_stops = self.exposure.unwrap_or(tone.exposure_stops);
         let mut metadata = metadata.clone();
         metadata.push(("Gain".to_owned(), self.gain.clone()));
-        let header = Header { tone, options, metadata, ..Header::new(region.width, region.height) };
+        let viewpoint = *viewpoint;
+        let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
         let mut writer = match self.output.as_str() {
             STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
             file => imaging::create(Path::new(file), format, &header)?,

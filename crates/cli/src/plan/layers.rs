@@ -5,7 +5,6 @@ use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::Product;
 use juggler::Aov;
-use juggler::imaging::Primaries;
 use juggler::imaging::layered::PLACEHOLDER;
 use std::path::Path;
 
@@ -33,14 +32,6 @@ pub fn wanted(args: &RenderArgs, output: &str, product: Product, is_film: bool) 
         }
         (Some(_), Some(file)) if product == Product::Part => {
             Err(Failure::Wrong(format!("a film part keeps its layers itself; `{file}` is for `juggler merge`")))
-        }
-        (Some(_), None)
-            if args.primaries.is_some_and(|primaries| primaries != Primaries::default())
-                && place(output, None) == Place::InPicture =>
-        {
-            wrong(
-                "layers keep the primaries of sRGB, and so does the picture among them: --primaries needs --aov-output",
-            )
         }
         (Some(layers), Some(file)) => {
             check(file)?;

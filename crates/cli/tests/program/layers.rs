@@ -7,7 +7,12 @@ const BALL: &str = "ball.json --size 48x36 --samples 20 --integrator path";
 
 #[test]
 fn shards_with_all_layers_are_the_bytes_of_the_whole() {
+    // With something to tell of in each: what moves, and what is clamped.
     let folder = Folder::new();
+    let limits = r#""samples": 2, "integrator": {"path": {"clamp_direct": 0.2}}"#;
+    let clamped = SCENE.replace(r#""samples": 2"#, limits);
+    assert!(clamped != SCENE);
+    fs::write(folder.path("ball.json"), clamped).unwrap();
     folder.good(&format!("render {BALL} --aov all -o whole.exr -q"));
     let parts: Vec<String> = (0..5).map(|index| format!("part{index}.jfilm")).collect();
     for (index, part) in parts.iter().enumerate() {
@@ -38,6 +43,66 @@ fn the_picture_is_the_same_with_layers_and_without() {
     assert!(folder.path("l_depth.npy").exists() && folder.path("l_normal.npy").exists());
     let said = folder.good("info c.exr").stdout;
     assert!(said.contains("--aov alpha,albedo"), "{said}");
+}
+
+#[test]
+fn layers_are_in_the_primaries_that_are_asked_for() {
+    let folder = Folder::new();
+    let wide = SCENE.replacen('{', r#"{"tone": {"primaries": "acescg"},"#, 1);
+    fs::write(folder.path("wide.json"), wide).unwrap();
+    let line = BALL.trim_start_matches("ball.json");
+    folder.good(&format!("render {BALL} --aov albedo,depth,direct -o plain.exr -q"));
+    folder.good(&format!("render {BALL} --aov albedo,depth,direct -o asked.exr -q --primaries acescg"));
+    folder.good(&format!("render wide.json {line} --aov albedo,depth,direct -o scene.exr -q"));
+    folder.good(&format!("render wide.json {line} --aov albedo,depth,direct -o kept.jfilm -q"));
+    folder.good("merge kept.jfilm -o merged.exr -q");
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert!(bytes("scene.exr") == bytes("merged.exr"));
+    for wide in ["asked.exr", "scene.exr"] {
+        folder.good(&format!("compare {wide} plain.exr --tolerance 1e-6"));
+        let all = bytes(wide);
+        let named = all.windows(15).filter(|window| *window == b"chromaticities\0").count();
+        // A name and a type in each of four parts.
+        assert_eq!(named, 8, "{wide}");
+    }
+}
+
+#[test]
+fn parts_of_other_motion_are_told_apart() {
+    let folder = Folder::new();
+    let part = |name: &str, shard: u32, aov: &str| {
+        folder.good(&format!("render {BALL} --aov {aov} --shard {shard}/2 -o {name} -q"));
+    };
+    part("first.jfilm", 0, "motion,depth");
+    part("plain.jfilm", 0, "depth");
+    // The same at this frame, and elsewhere at the next.
+    fs::write(folder.path("ball.json"), SCENE.replace("=frame / 4", "=frame / 2")).unwrap();
+    part("second.jfilm", 1, "motion,depth");
+    part("rest.jfilm", 1, "depth");
+    folder.good("merge plain.jfilm rest.jfilm -o a.exr -q");
+    let message = folder.bad("merge first.jfilm second.jfilm -o b.exr", 2);
+    assert!(message.contains("frames beside"), "{message}");
+}
+
+#[test]
+fn files_say_from_where_the_picture_was_taken() {
+    let folder = Folder::new();
+    let stats = folder.good(&format!("render {BALL} -o a.exr -q --stats -")).stdout;
+    let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+    let bytes = fs::read(folder.path("a.exr")).unwrap();
+    for (name, key) in [("worldToCamera", "world_to_camera"), ("worldToNDC", "world_to_ndc")] {
+        let head = format!("{name}\0m44f\0\u{40}\0\0\0");
+        let start = bytes.windows(head.len()).position(|window| window == head.as_bytes()).unwrap() + head.len();
+        let found: Vec<f32> =
+            bytes[start..start + 64].as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect();
+        let told = stats["camera"][key].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap());
+        let told: Vec<f32> = told.map(|number| number.as_f64().unwrap() as f32).collect();
+        assert_eq!(found, told, "{name}");
+    }
+    folder.good(&format!("render {BALL} -o a.jfilm -q"));
+    let merged = folder.good("merge a.jfilm -o b.exr -q --stats -").stdout;
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&merged).unwrap()["camera"], stats["camera"]);
+    assert!(fs::read(folder.path("b.exr")).unwrap() == bytes);
 }
 
 #[test]

@@ -27,6 +27,7 @@ fn description() -> Description {
         fingerprint: [("seed".to_owned(), "7".to_owned())].into(),
         tone: serde_json::to_value(Tone::default()).unwrap(),
         metadata: vec![("Software".into(), "Juggler".into())],
+        viewpoint: None,
     }
 }
 

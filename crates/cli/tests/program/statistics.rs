@@ -27,6 +27,7 @@ fn the_keys_are_those_that_were_promised() {
             "geometry",
             "memory",
             "film",
+            "camera",
             "fingerprint"
         ]
     );

@@ -1,6 +1,7 @@
 //! What a part says about itself: the JSON text at its head.
 
 use crate::share::whole_tiles;
+use juggler_imaging::Viewpoint;
 use juggler_tracer::film::{BLOCK, Layout, Rect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -41,6 +42,45 @@ mod exact {
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
         let number: f64 = String::deserialize(deserializer)?.parse().map_err(D::Error::custom)?;
         if number.is_finite() { Ok(number) } else { Err(D::Error::custom("no finite number")) }
+    }
+}
+
+/// Matrices as texts of numbers, likewise.
+mod viewpoint {
+    use juggler_imaging::{Matrix4, Viewpoint};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Texts {
+        world_to_camera: String,
+        world_to_ndc: String,
+    }
+
+    fn text(matrix: &Matrix4) -> String {
+        matrix.iter().flatten().map(f32::to_string).collect::<Vec<_>>().join(" ")
+    }
+
+    fn matrix(text: &str) -> Option<Matrix4> {
+        let numbers: Vec<f32> = text.split(' ').map(str::parse).collect::<Result<_, _>>().ok()?;
+        let rows = numbers.as_chunks().0.try_into().ok();
+        rows.filter(|_| numbers.len() == 16 && numbers.iter().all(|number| number.is_finite()))
+    }
+
+    pub fn serialize<S: Serializer>(viewpoint: &Option<Viewpoint>, serializer: S) -> Result<S::Ok, S::Error> {
+        let texts = viewpoint.as_ref().map(|Viewpoint { world_to_camera, world_to_ndc }| Texts {
+            world_to_camera: text(world_to_camera),
+            world_to_ndc: text(world_to_ndc),
+        });
+        texts.serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Viewpoint>, D::Error> {
+        let Some(Texts { world_to_camera, world_to_ndc }) = Option::deserialize(deserializer)? else { return Ok(None) };
+        match (matrix(&world_to_camera), matrix(&world_to_ndc)) {
+            (Some(world_to_camera), Some(world_to_ndc)) => Ok(Some(Viewpoint { world_to_camera, world_to_ndc })),
+            _ => Err(D::Error::custom("a matrix is no 16 finite numbers")),
+        }
     }
 }
 
@@ -87,6 +127,9 @@ pub struct Layered {
     /// Names of groups of lights, in order.
     #[serde(default)]
     pub light_groups: Vec<String>,
+    /// A hash of what the scene is at the frames beside, where any layer tells of that.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub beside: String,
 }
 
 impl Layered {
@@ -139,6 +182,9 @@ pub struct Description {
     pub tone: Value,
     /// Texts for the picture's file.
     pub metadata: Vec<(String, String)>,
+    /// From where it was taken, for the picture's file.
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "viewpoint")]
+    pub viewpoint: Option<Viewpoint>,
 }
 
 /// What two parts do not have in common though they should.
@@ -174,6 +220,7 @@ impl Description {
         compare("clamped", self.clamped.to_string(), other.clamped.to_string());
         compare("stop", self.stop.to_string(), other.stop.to_string());
         compare("layers", self.layers.to_string(), other.layers.to_string());
+        compare("frames beside", self.layers.beside.clone(), other.layers.beside.clone());
         let names =
             self.fingerprint.keys().chain(other.fingerprint.keys().filter(|k| !self.fingerprint.contains_key(*k)));
         for name in names {

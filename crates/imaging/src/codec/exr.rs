@@ -1,192 +1,41 @@
 //! OpenEXR: one part of scanlines, channels B, G, R as floats or halves, plain or packed; values
-//! are scene-referred and no tone curve applies; primaries other than those of sRGB are named. The header is written here, in a fixed order, since the bytes of
-//! equal pictures must be equal; blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
+//! are scene-referred and no tone curve applies; primaries other than those of sRGB are named. It is written as a file of layers
+//! that has one. (OpenEXR file layout, openexr.com.)
 
-use super::{ExrCompression, Header, Inspected, ReadSeek, RowWriter, SampleDepth, Source, Texts};
-use crate::output::{Destination, WriteSeek};
+use super::{Header, Inspected, ReadSeek, RowWriter, Source, Texts};
+use crate::ImageError;
+use crate::layered::{self, LayerHeader, LayerRows, LayeredHeader};
+use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::{Chromaticities, Matrix};
-use crate::{Format, ImageError};
-use exr::block::{BlockIndex, UncompressedBlock};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
-use exr::meta::BlockDescription;
-use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
 use exr::meta::header::Header as ExrHeader;
-use exr::prelude::{Compression, ReadChannels, ReadLayers, ReadSpecificChannel, f16};
+use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
 use juggler_math::{Image, Rgb};
-use std::io::{self, BufRead, Read, SeekFrom};
+use std::io::{self, BufRead, Read};
 
-/// The version, and the flag for names of more than 31 bytes.
-const VERSION: u32 = 2;
-const LONG_NAMES: u32 = 0x400;
-
-/// Streams blocks of rows into an EXR.
-pub(super) struct Writer {
-    bytes: Box<dyn WriteSeek>,
-    place: String,
-    headers: [ExrHeader; 1],
-    depth: SampleDepth,
-    width: usize,
-    height: usize,
-    block_rows: usize,
-    /// To the file's primaries.
-    primaries: Option<Matrix>,
-    /// Rows of a block that is not full yet.
-    pending: Vec<Rgb>,
-    /// Where the table of offsets stands, and the file's end so far.
-    table: u64,
-    end: u64,
-    offsets: Vec<u64>,
-}
+/// Streams blocks of rows into an EXR: one layer, without a name of its own.
+pub(super) struct Writer(layered::exr::Writer);
 
 impl Writer {
     pub fn new(destination: Destination, header: &Header) -> Result<Self, ImageError> {
         let place = destination.name().to_owned();
-        let mut bytes = destination.into_seekable();
-        let start = header_bytes(header);
-        let (width, height) = (header.width as usize, header.height as usize);
-        let block_rows = packing(header.options.exr_compression).scan_lines_per_block();
-        let blocks = height.div_ceil(block_rows);
-        let offsets = Vec::with_capacity(blocks);
-        let table = start.len() as u64;
-        let end = table + 8 * blocks as u64;
-        let written = bytes.write_all(&start).and_then(|()| bytes.seek(SeekFrom::Start(end)));
-        if let Err(source) = written {
-            return Err(ImageError::Write { place, source });
-        }
-        let (depth, headers) = (header.options.exr_depth, [description(header)]);
-        let (primaries, pending) = (header.tone.primaries.conversion(), Vec::new());
-        Ok(Self { bytes, place, headers, depth, width, height, block_rows, primaries, pending, table, end, offsets })
-    }
-
-    fn write_block(&mut self) -> Result<(), ImageError> {
-        let y = self.offsets.len() * self.block_rows;
-        let rows = self.pending.len() / self.width;
-        let index =
-            BlockIndex { layer: 0, pixel_position: Vec2(0, y), pixel_size: Vec2(self.width, rows), level: Vec2(0, 0) };
-        let data = planes(&self.pending, self.width, self.depth);
-        self.pending.clear();
-        let mut chunk = Vec::new();
-        let packed = UncompressedBlock { index, data }.compress_to_chunk(&self.headers);
-        let packed = packed.and_then(|packed| packed.write(&mut chunk, 1));
-        packed.map_err(|e| self.refused(&e))?;
-        self.offsets.push(self.end);
-        self.end += chunk.len() as u64;
-        self.bytes.write_all(&chunk).map_err(|e| self.failed(e))
-    }
-
-    fn failed(&self, source: io::Error) -> ImageError {
-        ImageError::Write { place: self.place.clone(), source }
-    }
-
-    fn refused(&self, error: &ExrError) -> ImageError {
-        ImageError::Encode { place: self.place.clone(), format: Format::Exr, message: error.to_string() }
+        let picture = LayeredHeader::new(header, vec![LayerHeader::beauty(header.options.exr_depth)]);
+        layered::exr::Writer::new(destination.into_seekable(), place, &picture).map(Self)
     }
 }
 
 impl RowWriter for Writer {
     fn write_rows(&mut self, rows: &[Rgb]) -> Result<(), ImageError> {
-        for row in rows.chunks_exact(self.width) {
-            match &self.primaries {
-                Some(matrix) => self.pending.extend(row.iter().map(|pixel| matrix.color(*pixel))),
-                None => self.pending.extend(row),
-            }
-            let done = self.offsets.len() * self.block_rows + self.pending.len() / self.width;
-            if self.pending.len() == self.width * self.block_rows || done == self.height {
-                self.write_block()?;
-            }
-        }
-        Ok(())
+        let [red, green, blue] =
+            [0, 1, 2].map(|channel| rows.iter().map(|pixel| pixel.to_array()[channel]).collect::<Vec<_>>());
+        self.0.write_rows(&[&red, &green, &blue])
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), ImageError> {
-        let table: Vec<u8> = self.offsets.iter().flat_map(|o| o.to_le_bytes()).collect();
-        let written = self.bytes.seek(SeekFrom::Start(self.table)).and_then(|_| self.bytes.write_all(&table));
-        written.and_then(|()| self.bytes.flush()).map_err(|e| self.failed(e))
+        self.0.finish()
     }
-}
-
-/// A block's samples: row by row, in each all of B, then G, then R.
-fn planes(rows: &[Rgb], width: usize, depth: SampleDepth) -> Vec<u8> {
-    let mut data = Vec::with_capacity(rows.len() * 12);
-    for row in rows.chunks_exact(width) {
-        for channel in [2, 1, 0] {
-            let samples = row.iter().map(|p| p.to_array()[channel]);
-            match depth {
-                SampleDepth::Float => data.extend(samples.flat_map(f32::to_ne_bytes)),
-                SampleDepth::Half => data.extend(samples.flat_map(|v| f16::from_f32(v).to_ne_bytes())),
-            }
-        }
-    }
-    data
-}
-
-fn packing(compression: ExrCompression) -> Compression {
-    match compression {
-        ExrCompression::None => Compression::Uncompressed,
-        ExrCompression::Rle => Compression::RLE,
-        ExrCompression::Zip => Compression::ZIP16,
-    }
-}
-
-/// What the packer needs to know.
-fn description(header: &Header) -> ExrHeader {
-    let sample_type = match header.options.exr_depth {
-        SampleDepth::Float => SampleType::F32,
-        SampleDepth::Half => SampleType::F16,
-    };
-    let channels = ["B", "G", "R"].map(|name| ChannelDescription::new(name, sample_type, false));
-    let size = (header.width as usize, header.height as usize);
-    let plain = ExrHeader::new("".into(), size, channels.into_iter().collect());
-    plain.with_encoding(packing(header.options.exr_compression), BlockDescription::ScanLines, LineOrder::Increasing)
-}
-
-/// Magic, version and attributes, ours after the required ones.
-fn header_bytes(header: &Header) -> Vec<u8> {
-    let long = header.metadata.iter().any(|(key, _)| key.len() > 31);
-    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01];
-    bytes.extend((VERSION | if long { LONG_NAMES } else { 0 }).to_le_bytes());
-    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
-        bytes.extend(name.bytes().filter(|&b| b != 0).take(255).chain([0]));
-        bytes.extend(kind.bytes().chain([0]));
-        bytes.extend((value.len() as u32).to_le_bytes());
-        bytes.extend(value);
-    };
-    let pixel_type = if header.options.exr_depth == SampleDepth::Half { 1u32 } else { 2 };
-    let mut channels = Vec::new();
-    for name in [b'B', b'G', b'R'] {
-        channels.extend([name, 0]);
-        channels.extend([pixel_type, 0, 1, 1].into_iter().flat_map(u32::to_le_bytes));
-    }
-    channels.push(0);
-    let window: Vec<u8> = [0, 0, header.width - 1, header.height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
-    attribute("channels", "chlist", &channels);
-    if !header.tone.primaries.is_srgb() {
-        attribute("chromaticities", "chromaticities", &eight(header.tone.primaries.chromaticities()));
-    }
-    let code = match header.options.exr_compression {
-        ExrCompression::None => 0,
-        ExrCompression::Rle => 1,
-        ExrCompression::Zip => 3,
-    };
-    attribute("compression", "compression", &[code]);
-    attribute("dataWindow", "box2i", &window);
-    attribute("displayWindow", "box2i", &window);
-    attribute("lineOrder", "lineOrder", &[0]);
-    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
-    attribute("screenWindowCenter", "v2f", &[0; 8]);
-    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
-    for (key, text) in header.metadata.iter().filter(|(key, _)| !key.is_empty()) {
-        attribute(key, "string", text.as_bytes());
-    }
-    bytes.push(0);
-    bytes
-}
-
-/// Eight floats: x and y of each.
-fn eight(Chromaticities { red, green, blue, white }: Chromaticities) -> Vec<u8> {
-    [red, green, blue, white].into_iter().flatten().flat_map(|v| (v as f32).to_le_bytes()).collect()
 }
 
 fn unreadable(source: Source, error: ExrError) -> ImageError {

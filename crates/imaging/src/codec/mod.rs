@@ -11,7 +11,7 @@ use crate::look::{self, Look};
 use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::{Curve, Srgb, Tone};
-use crate::{Format, ImageError, Limits};
+use crate::{Format, ImageError, Limits, Viewpoint};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Seek};
 
@@ -37,12 +37,15 @@ pub struct Header {
     pub options: Options,
     /// Texts by key, in order: the program, the fingerprint, the seed. PNG, EXR and HDR keep them.
     pub metadata: Vec<(String, String)>,
+    /// From where it was taken, if anybody knows. EXR keeps it.
+    pub viewpoint: Option<Viewpoint>,
 }
 
 impl Header {
     /// A picture of that size, all else by default.
     pub fn new(width: u32, height: u32) -> Self {
-        Self { width, height, tone: Tone::default(), options: Options::default(), metadata: Vec::new() }
+        let (tone, options) = (Tone::default(), Options::default());
+        Self { width, height, tone, options, metadata: Vec::new(), viewpoint: None }
     }
 
     /// Whether the format can say which primaries these are: asked before anything is rendered.

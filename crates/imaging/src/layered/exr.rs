@@ -1,8 +1,10 @@
-//! OpenEXR with a part for each layer: scanlines, channels as floats or halves. As for a single picture, the headers are
-//! written here, in a fixed order, and blocks are packed by the crate `exr`. (OpenEXR file layout, openexr.com.)
+//! OpenEXR with a part for each layer: scanlines, channels as floats or halves. Blocks are packed by the crate `exr`.
+//! (OpenEXR file layout, openexr.com.)
 
+use super::attributes::{self, Attributes};
 use super::{LayerHeader, LayerRows, LayeredHeader};
 use crate::output::WriteSeek;
+use crate::tone::Matrix;
 use crate::{ExrCompression, Format, ImageError, SampleDepth};
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::error::Error as ExrError;
@@ -11,13 +13,8 @@ use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
 use exr::meta::header::Header as ExrHeader;
 use exr::prelude::{Compression, f16};
+use juggler_math::Rgb;
 use std::io::{self, SeekFrom};
-
-const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// The version, the flag for names of more than 31 bytes and that for several parts.
-const VERSION: u32 = 2;
-const LONG_NAMES: u32 = 0x400;
-const MULTI_PART: u32 = 0x1000;
 
 /// Streams blocks of rows of all parts into an EXR.
 pub struct Writer {
@@ -36,6 +33,8 @@ pub struct Writer {
 /// One part on its way.
 struct Part {
     depth: SampleDepth,
+    /// To the file's primaries, where its channels are a colour.
+    primaries: Option<Matrix>,
     /// Which of the layer's channels come in the order of their names.
     order: Vec<usize>,
     /// Rows of a block that is not full yet, channel by channel.
@@ -57,8 +56,9 @@ impl Writer {
         }
         let headers = header.layers.iter().map(|layer| description(layer, header)).collect();
         let part = |layer: &LayerHeader| {
-            let pending = vec![Vec::new(); layer.channels.len()];
-            Part { depth: layer.depth, order: by_name(layer), pending, offsets: Vec::with_capacity(blocks) }
+            let primaries = header.primaries.conversion().filter(|_| layer.is_color);
+            let (order, pending) = (by_name(layer), vec![Vec::new(); layer.channels.len()]);
+            Part { depth: layer.depth, primaries, order, pending, offsets: Vec::with_capacity(blocks) }
         };
         let parts = header.layers.iter().map(part).collect();
         Ok(Self { bytes, place, headers, parts, width, height, block_rows, tables, end })
@@ -97,9 +97,10 @@ impl Writer {
         let full = self.width * self.block_rows;
         for number in 0..self.parts.len() {
             let Some(part) = self.parts.get_mut(number) else { continue };
-            for (pending, channel) in part.pending.iter_mut().zip(&mut channels) {
-                pending.extend_from_slice(channel.get(pixels.clone()).unwrap_or_default());
-            }
+            let count = part.pending.len();
+            let rows: Vec<&[f32]> =
+                channels.by_ref().take(count).map(|channel| channel.get(pixels.clone()).unwrap_or_default()).collect();
+            part.take(&rows);
             let waiting = part.pending.first().map_or(0, Vec::len);
             let done = part.offsets.len() * self.block_rows + waiting / self.width.max(1);
             if waiting == full || done == self.height {
@@ -125,6 +126,17 @@ impl LayerRows for Writer {
 }
 
 impl Part {
+    /// Takes one row of its channels.
+    fn take(&mut self, channels: &[&[f32]]) {
+        let (Some(matrix), [red, green, blue]) = (&self.primaries, channels) else {
+            return self.pending.iter_mut().zip(channels).for_each(|(pending, row)| pending.extend_from_slice(row));
+        };
+        for ((red, green), blue) in red.iter().zip(*green).zip(*blue) {
+            let color = matrix.color(Rgb::new(*red, *green, *blue)).to_array();
+            self.pending.iter_mut().zip(color).for_each(|(pending, value)| pending.push(value));
+        }
+    }
+
     /// A block's samples: row by row, in each channel after channel by name.
     fn planes(&self, width: usize) -> Vec<u8> {
         let rows = self.pending.first().map_or(0, Vec::len) / width.max(1);
@@ -175,15 +187,12 @@ fn description(layer: &LayerHeader, header: &LayeredHeader) -> ExrHeader {
 fn header_bytes(header: &LayeredHeader, blocks: usize) -> Vec<u8> {
     let several = header.layers.len() > 1;
     let texts = header.layers.iter().flat_map(|layer| &layer.metadata).chain(&header.metadata);
-    let long = texts.map(|(key, _)| key).chain(header.layers.iter().flat_map(|layer| &layer.channels));
-    let long = long.into_iter().any(|name| name.len() > 31);
-    let version = VERSION | if long { LONG_NAMES } else { 0 } | if several { MULTI_PART } else { 0 };
-    let mut bytes = MAGIC.to_vec();
-    bytes.extend(version.to_le_bytes());
+    let names = texts.map(|(key, _)| key).chain(header.layers.iter().flat_map(|layer| &layer.channels));
+    let mut bytes = attributes::start(names.map(String::len).max().unwrap_or(0), several);
     for (number, layer) in header.layers.iter().enumerate() {
         // Texts of the picture stand in its first part.
         let common = if number == 0 { header.metadata.as_slice() } else { &[] };
-        part_bytes(header, layer, common, several.then_some(blocks), &mut bytes);
+        bytes.extend(part_bytes(header, layer, common, several.then_some(blocks)));
     }
     if several {
         bytes.push(0);
@@ -191,52 +200,25 @@ fn header_bytes(header: &LayeredHeader, blocks: usize) -> Vec<u8> {
     bytes
 }
 
-/// The attributes of one part, and the zero after them; `blocks` where there are several parts.
+/// The attributes of one part; `blocks` where there are several parts.
 fn part_bytes(
     header: &LayeredHeader,
     layer: &LayerHeader,
     common: &[(String, String)],
     blocks: Option<usize>,
-    bytes: &mut Vec<u8>,
-) {
-    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
-        bytes.extend(name.bytes().filter(|&b| b != 0).take(255).chain([0]));
-        bytes.extend(kind.bytes().chain([0]));
-        bytes.extend((value.len() as u32).to_le_bytes());
-        bytes.extend(value);
-    };
-    let window: Vec<u8> = [0, 0, header.width - 1, header.height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
-    attribute("channels", "chlist", &channel_list(layer));
-    let code = match header.compression {
-        ExrCompression::None => 0,
-        ExrCompression::Rle => 1,
-        ExrCompression::Zip => 3,
-    };
-    attribute("compression", "compression", &[code]);
-    attribute("dataWindow", "box2i", &window);
-    attribute("displayWindow", "box2i", &window);
-    attribute("lineOrder", "lineOrder", &[0]);
-    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
-    attribute("screenWindowCenter", "v2f", &[0; 8]);
-    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+) -> Vec<u8> {
+    let mut attributes = Attributes::default();
+    let names = by_name(layer).into_iter().filter_map(|channel| layer.channels.get(channel));
+    attributes.channels(names.map(String::as_str), layer.depth);
+    // All parts of a file must say the same of it (OpenEXR, "shared attributes").
+    if !header.primaries.is_srgb() && (layer.is_color || blocks.is_some()) {
+        attributes.chromaticities(header.primaries.chromaticities());
+    }
+    attributes.frame(header.width, header.height, header.compression);
     if let Some(blocks) = blocks {
-        attribute("chunkCount", "int", &(blocks as u32).to_le_bytes());
-        attribute("name", "string", layer.name.as_bytes());
-        attribute("type", "string", b"scanlineimage");
+        attributes.part(&layer.name, blocks);
     }
-    for (key, text) in common.iter().chain(&layer.metadata).filter(|(key, _)| !key.is_empty()) {
-        attribute(key, "string", text.as_bytes());
-    }
-    bytes.push(0);
-}
-
-fn channel_list(layer: &LayerHeader) -> Vec<u8> {
-    let pixel_type = if layer.depth == SampleDepth::Half { 1u32 } else { 2 };
-    let mut channels = Vec::new();
-    for name in by_name(layer).into_iter().filter_map(|channel| layer.channels.get(channel)) {
-        channels.extend(name.bytes().filter(|&b| b != 0).chain([0]));
-        channels.extend([pixel_type, 0, 1, 1].into_iter().flat_map(u32::to_le_bytes));
-    }
-    channels.push(0);
-    channels
+    header.viewpoint.iter().for_each(|viewpoint| attributes.viewpoint(viewpoint));
+    attributes.texts(common.iter().chain(&layer.metadata));
+    attributes.finish()
 }

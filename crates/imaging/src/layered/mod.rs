@@ -2,12 +2,13 @@
 //!
 //! Rows come for all layers together, so that a large picture needs no more memory than the film that it comes from.
 
-mod exr;
+mod attributes;
+pub(crate) mod exr;
 mod npy;
 
 use crate::atomic::AtomicFile;
 use crate::output::{WriteSeek, whole_file};
-use crate::{ExrCompression, ImageError, SampleDepth};
+use crate::{ExrCompression, Header, ImageError, Primaries, SampleDepth, Viewpoint};
 use std::path::{Path, PathBuf};
 
 /// What stands for a layer's name in the name of a file.
@@ -22,6 +23,8 @@ pub struct LayerHeader {
     pub channels: Vec<String>,
     /// How exact an EXR keeps it.
     pub depth: SampleDepth,
+    /// Whether its three channels are red, green and blue in the primaries of sRGB, which an EXR turns into its own.
+    pub is_color: bool,
     /// Texts by key, in order, for an EXR.
     pub metadata: Vec<(String, String)>,
 }
@@ -30,13 +33,19 @@ impl LayerHeader {
     /// A layer whose channels carry its name: `normal.X`.
     pub fn new(name: &str, channels: &[&str]) -> Self {
         let channels = channels.iter().map(|channel| format!("{name}.{channel}")).collect();
-        Self { name: name.to_owned(), channels, depth: SampleDepth::Float, metadata: Vec::new() }
+        let (name, depth) = (name.to_owned(), SampleDepth::Float);
+        Self { name, channels, depth, is_color: false, metadata: Vec::new() }
+    }
+
+    /// A layer of colours.
+    pub fn color(name: &str) -> Self {
+        Self { is_color: true, ..Self::new(name, &["R", "G", "B"]) }
     }
 
     /// The picture itself, whose channels are plain `R`, `G` and `B`.
     pub fn beauty(depth: SampleDepth) -> Self {
         let channels = ["R", "G", "B"].map(str::to_owned).to_vec();
-        Self { name: "beauty".to_owned(), channels, depth, metadata: Vec::new() }
+        Self { name: "beauty".to_owned(), channels, depth, is_color: true, metadata: Vec::new() }
     }
 }
 
@@ -51,8 +60,27 @@ pub struct LayeredHeader {
     pub layers: Vec<LayerHeader>,
     /// Packing of an EXR; nothing is lost by any.
     pub compression: ExrCompression,
+    /// The primaries of an EXR's colours. An NPY, which cannot say so, keeps those of sRGB.
+    pub primaries: Primaries,
     /// Texts of the picture as a whole.
     pub metadata: Vec<(String, String)>,
+    /// From where it was taken, if anybody knows.
+    pub viewpoint: Option<Viewpoint>,
+}
+
+impl LayeredHeader {
+    /// With what `header` says of the picture.
+    pub fn new(header: &Header, layers: Vec<LayerHeader>) -> Self {
+        Self {
+            width: header.width,
+            height: header.height,
+            layers,
+            compression: header.options.exr_compression,
+            primaries: header.tone.primaries,
+            metadata: header.metadata.clone(),
+            viewpoint: header.viewpoint,
+        }
+    }
 }
 
 /// Writes rows of layers to their files, which take their places when all are finished.
@@ -70,7 +98,7 @@ struct Piece {
 }
 
 /// A file of some channels.
-trait LayerRows {
+pub(crate) trait LayerRows: Send {
     /// Takes the next rows, channel by channel.
     fn write_rows(&mut self, channels: &[&[f32]]) -> Result<(), ImageError>;
     /// Writes what is left.

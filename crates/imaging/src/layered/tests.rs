@@ -6,7 +6,8 @@ fn header(names: &[(&str, &[&str])]) -> LayeredHeader {
     let mut layers: Vec<LayerHeader> = std::iter::once(LayerHeader::beauty(SampleDepth::Half)).chain(layers).collect();
     layers[1].metadata.push(("cryptomatte/abcdefg/manifest".into(), "{}".into()));
     let metadata = vec![("Software".to_owned(), "Juggler".to_owned())];
-    LayeredHeader { width: 5, height: 37, layers, compression: ExrCompression::Zip, metadata }
+    let header = Header { metadata, ..Header::new(5, 37) };
+    LayeredHeader { compression: ExrCompression::Zip, ..LayeredHeader::new(&header, layers) }
 }
 
 /// What a channel is called, and its values.
@@ -90,4 +91,47 @@ fn a_file_for_each_layer_and_arrays_for_numpy() {
         let header = LayeredHeader { layers: header.layers[..layers].to_vec(), ..header.clone() };
         assert!(matches!(LayeredWriter::create(&folder.path().join(name), &header), Err(ImageError::Layers { .. })));
     }
+}
+
+#[test]
+fn colours_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let mut plain = header(&[("normal", &["X", "Y", "Z"])]);
+    plain.layers[0].depth = SampleDepth::Float;
+    plain.layers.push(LayerHeader::color("albedo"));
+    let wide = LayeredHeader { primaries: Primaries::Acescg, ..plain.clone() };
+    written(&path("plain.exr"), &plain, &[37]);
+    written(&path("wide.exr"), &wide, &[20, 17]);
+    written(&path("{}.exr"), &wide, &[37]);
+    written(&path("{}.npy"), &wide, &[37]);
+    let read = |name: &str| {
+        let reader = ::exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
+        reader.all_layers().all_attributes().non_parallel().from_file(path(name)).unwrap()
+    };
+    let (plain, wide) = (read("plain.exr"), read("wide.exr"));
+    assert!(plain.attributes.chromaticities.is_none());
+    let found = wide.attributes.chromaticities.unwrap();
+    assert_eq!((found.red.0, found.red.1), (0.713, 0.293));
+    let values = |name: &str, layer: usize| -> Vec<Vec<f32>> {
+        let image = read(name);
+        let channels = image.layer_data[layer].channel_data.list.iter().rev();
+        channels.map(|channel| channel.sample_data.values_as_f32().collect()).collect()
+    };
+    let matrix = Primaries::Acescg.conversion().unwrap();
+    for layer in [0, 2] {
+        let (from, to) = (values("plain.exr", layer), values("wide.exr", layer));
+        for pixel in 0..185 {
+            let color = |channels: &[Vec<f32>]| {
+                juggler_math::Rgb::new(channels[0][pixel], channels[1][pixel], channels[2][pixel])
+            };
+            assert_eq!(color(&to), matrix.color(color(&from)), "{layer} {pixel}");
+        }
+    }
+    assert_eq!(values("plain.exr", 1), values("wide.exr", 1));
+    // Alone, only colours have primaries; arrays cannot name theirs.
+    assert!(read("normal.exr").attributes.chromaticities.is_none());
+    assert!(read("albedo.exr").attributes.chromaticities.is_some());
+    let array = std::fs::read(path("albedo.npy")).unwrap();
+    assert!(array.ends_with(&value(8, 184).to_le_bytes()));
 }

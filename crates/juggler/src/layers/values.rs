@@ -3,7 +3,7 @@
 use super::{Aov, LayerSet, cryptomatte};
 use juggler_math::Rgb;
 use juggler_tracer::film::{Extras, Rect, Statistics, Tile};
-use juggler_tracer::layer::{Layer, LightGroup};
+use juggler_tracer::layer::{Beside, Layer, LightGroup};
 
 /// Which kind of mask tells what apart.
 const OBJECTS: usize = 0;
@@ -72,6 +72,12 @@ impl Pixel<'_> {
         place.copied().unwrap_or(Rgb::BLACK)
     }
 
+    /// Mean of a layer's first two numbers over what its third says.
+    fn known(&self, layer: Layer) -> impl Iterator<Item = f32> {
+        let sum = self.sum(layer);
+        over(sum, sum.b).into_iter().take(2)
+    }
+
     /// How much of the pixel shows things, by rising number.
     fn shares(&self, kind: usize) -> Vec<(u32, f32)> {
         let mask = self.extras.masks.get(kind).map(|mask| mask.pixel(self.number)).unwrap_or_default();
@@ -96,10 +102,9 @@ impl Pixel<'_> {
                 row.push(if g > 0.0 { r / g } else { f32::INFINITY });
             }
             Aov::Position => row.extend(over(self.sum(Layer::Position), self.sum(Layer::Coverage).r)),
-            Aov::Uv => {
-                let sum = self.sum(Layer::Uv);
-                row.extend(over(sum, sum.b).into_iter().take(2));
-            }
+            Aov::Uv => row.extend(self.known(Layer::Uv)),
+            Aov::Motion => row.extend(self.known(Layer::Motion(Beside::Next))),
+            Aov::MotionBack => row.extend(self.known(Layer::Motion(Beside::Previous))),
             Aov::Emission => row.extend(self.mean(Layer::Emission).to_array()),
             Aov::Direct => row.extend(self.mean(Layer::Direct).to_array()),
             Aov::Indirect => row.extend(self.mean(Layer::Indirect).to_array()),
@@ -121,6 +126,7 @@ impl Pixel<'_> {
                 row.extend(variance.map(|value| if blocks < 2 { f32::INFINITY } else { value as f32 }));
             }
             Aov::NotFinite => row.push(self.sum(Layer::Coverage).g),
+            Aov::Clamped => row.push(self.sum(Layer::Coverage).b),
         }
     }
 }

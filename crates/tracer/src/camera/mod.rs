@@ -13,6 +13,7 @@
 use juggler_math::{UVec2, Vec3};
 
 mod field_of_view;
+mod finder;
 mod orthographic;
 mod perspective;
 mod pose;
@@ -24,6 +25,7 @@ mod thin_lens;
 mod contract;
 
 pub use field_of_view::{Screen, ViewPlane};
+pub use finder::{Finder, Matrix};
 pub use pose::{Axes, Move};
 pub use projection::{LANES, Projection};
 pub use shot::Shot;

@@ -12,20 +12,20 @@ pub const LANES: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// The eye.
-    origin: Vec3,
+    pub(super) origin: Vec3,
     /// From the eye to the film's top left corner.
-    corner: Vec3,
+    pub(super) corner: Vec3,
     /// One pixel to the right.
-    right: Vec3,
+    pub(super) right: Vec3,
     /// One pixel down.
-    down: Vec3,
+    pub(super) down: Vec3,
     /// How rays leave the film.
-    lens: Lens,
+    pub(super) lens: Lens,
 }
 
 /// How rays leave the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Lens {
+pub(super) enum Lens {
     /// All through one point.
     Pinhole,
     /// Through a disk around the eye, spanned by two radii; sharp at a distance of 1 / `focus`.

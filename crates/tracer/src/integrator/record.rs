@@ -2,14 +2,18 @@
 
 use super::{Emit, Way};
 use crate::film::{MASKS, Mark};
+use crate::frames::Frames;
 use crate::layer::{Guide, Layer, Layers, LightGroup};
 use crate::world::{Vertex, World};
-use juggler_math::{Ray, Rgb, Vec3};
+use juggler_math::{DVec2, Ray, Rgb, Vec3};
+use std::sync::Arc;
 
 /// The layers of some samples.
 #[derive(Debug)]
 pub(crate) struct Record {
     layers: Layers,
+    /// What the scene is at other frames, where that is known.
+    frames: Option<Arc<Frames>>,
     /// Where light goes by its way, and by its group.
     ways: [Option<usize>; 3],
     groups: Vec<Option<usize>>,
@@ -17,6 +21,8 @@ pub(crate) struct Record {
     color: Option<usize>,
     /// What the filter makes of each sample.
     weights: Vec<f32>,
+    /// How far the camera's ray of each has come through holes.
+    passed: Vec<f32>,
     /// Whether it is known what denoising of each sample is guided by.
     is_guided: Vec<bool>,
     /// As many a sample as there are layers.
@@ -26,7 +32,7 @@ pub(crate) struct Record {
 }
 
 impl Record {
-    pub fn new(layers: &Layers) -> Self {
+    pub fn new(layers: &Layers, frames: Option<&Arc<Frames>>) -> Self {
         let ways = [Layer::Emission, Layer::Direct, Layer::Indirect].map(|layer| layers.place(layer));
         let mut groups = Vec::new();
         for (place, layer) in layers.planes.iter().enumerate() {
@@ -40,10 +46,12 @@ impl Record {
         let layers = layers.clone();
         Self {
             layers,
+            frames: frames.map(Arc::clone),
             ways,
             groups,
             color,
             weights: Vec::new(),
+            passed: Vec::new(),
             is_guided: Vec::new(),
             planes: Vec::new(),
             marks: Vec::new(),
@@ -54,6 +62,8 @@ impl Record {
     pub fn begin(&mut self, weights: impl Iterator<Item = f32>) {
         self.weights.clear();
         self.weights.extend(weights);
+        self.passed.clear();
+        self.passed.resize(self.weights.len(), 0.0);
         self.is_guided.clear();
         self.is_guided.resize(self.weights.len(), false);
         self.planes.clear();
@@ -88,8 +98,14 @@ impl Record {
                 Layer::Albedo => albedo,
                 Layer::Normal => color(normal),
                 Layer::GeometricNormal => color(surface.normal),
-                Layer::Depth => Rgb::new(ray.t_max, 1.0, 0.0),
+                Layer::Depth => Rgb::new(self.passed[slot] + ray.t_max, 1.0, 0.0),
                 Layer::Position => color(surface.point),
+                Layer::Motion(which) => {
+                    match self.frames.as_deref().and_then(|frames| frames.way(which, sight.world, vertex, ray.time)) {
+                        Some(way) => pixels(way),
+                        None => continue,
+                    }
+                }
                 Layer::Uv => Rgb::new(surface.uv.x, surface.uv.y, 1.0),
                 Layer::Guide(Guide::Depth) | Layer::Half(Guide::Depth) => Rgb::new(ray.t_max, 1.0, 0.0),
                 _ => continue,
@@ -99,6 +115,17 @@ impl Record {
         if let Some(mark) = self.marks.get_mut(slot) {
             let things: [u32; MASKS] = [sight.world.entry_of(vertex.object), vertex.material.0, vertex.object];
             *mark = Mark { things, weight };
+        }
+    }
+
+    /// Where the camera's ray of a sample goes that met nothing.
+    fn miss(&mut self, slot: usize, ray: &Ray) {
+        let Some(frames) = &self.frames else { return };
+        for place in 0..self.layers.planes.len() {
+            let Layer::Motion(which) = self.layers.planes[place] else { continue };
+            if let Some(way) = frames.way_of_direction(which, ray.direction, ray.time) {
+                self.planes[slot * self.layers.planes.len() + place] += pixels(way) * self.weights[slot];
+            }
         }
     }
 
@@ -138,11 +165,31 @@ fn color(vector: Vec3) -> Rgb {
     Rgb::new(vector.x, vector.y, vector.z)
 }
 
+/// A way on the film, and that it is known.
+fn pixels(way: DVec2) -> Rgb {
+    Rgb::new(way.x as f32, way.y as f32, 1.0)
+}
+
 impl Emit<'_> {
     /// Whether anybody asks what is seen.
     #[inline]
     pub fn records(&self) -> bool {
         self.harvest.record.is_some()
+    }
+
+    /// Records that the path goes on through a hole as if nothing had been there.
+    pub fn pass(&mut self, ray: &Ray) {
+        if let Some(record) = self.harvest.record.as_mut().filter(|_| self.path.depth == 0) {
+            record.passed[self.path.slot as usize] += ray.t_max;
+        }
+    }
+
+    /// Records that the path met nothing.
+    pub fn miss(&mut self, ray: &Ray) {
+        let slot = self.path.slot as usize;
+        if let Some(record) = self.harvest.record.as_mut().filter(|_| self.path.depth == 0) {
+            record.miss(slot, ray);
+        }
     }
 
     /// Records what the path met.

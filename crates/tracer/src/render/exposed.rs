@@ -11,7 +11,7 @@ pub struct Exposed<'w> {
     runs: Vec<Run>,
     /// Layers to which only one half of the samples goes.
     halves: Vec<usize>,
-    /// The layer that counts samples that are no finite numbers.
+    /// The layer that counts samples that are no finite numbers, and those that are clamped.
     coverage: Option<usize>,
     /// Room for samples whose layers are changed.
     planes: Vec<Rgb>,
@@ -66,8 +66,10 @@ impl<'w> Exposed<'w> {
 
     fn add_to_pixel(&mut self, samples: Samples) -> u64 {
         let is_lost = |radiance: &Rgb| !radiance.is_finite();
-        let lost = self.coverage.filter(|_| samples.radiance.iter().any(is_lost));
-        if self.halves.is_empty() && lost.is_none() {
+        let is_cut = |taken: &f32| *taken != 0.0;
+        let is_any = samples.radiance.iter().any(is_lost) || samples.clamped.iter().any(is_cut);
+        let counted = self.coverage.filter(|_| is_any);
+        if self.halves.is_empty() && counted.is_none() {
             return self.pixel.add_samples(samples);
         }
         let first = self.work.samples.end - self.missing as u32;
@@ -75,12 +77,14 @@ impl<'w> Exposed<'w> {
         self.planes.clear();
         self.planes.extend_from_slice(samples.planes);
         let planes = self.planes.chunks_exact_mut(count.max(1));
-        for (number, (planes, radiance)) in (first..).zip(planes.zip(samples.radiance)) {
+        let cut = samples.clamped.iter().map(is_cut).chain(std::iter::repeat(false));
+        for ((number, cut), (planes, radiance)) in (first..).zip(cut).zip(planes.zip(samples.radiance)) {
             if !is_half(number) {
                 self.halves.iter().for_each(|place| planes[*place] = Rgb::BLACK);
             }
-            if let Some(place) = lost.filter(|_| is_lost(radiance)) {
-                planes[place].g = 1.0;
+            if let Some(place) = counted {
+                planes[place].g = f32::from(is_lost(radiance));
+                planes[place].b = f32::from(cut);
             }
         }
         self.pixel.add_samples(Samples { planes: &self.planes, ..samples })

@@ -5,11 +5,13 @@
 
 use crate::camera::Shot;
 use crate::film::{Filter, Rect, Run, Tile};
+use crate::frames::Frames;
 use crate::integrator::Integrator;
 use crate::layer::Layers;
 use crate::sampler::Pattern;
 use crate::world::World;
 use std::ops::Range;
+use std::sync::Arc;
 
 mod control;
 mod expose;
@@ -65,6 +67,9 @@ pub struct Job<'w> {
     pub seed: u64,
     /// What is kept beside radiance.
     pub layers: &'w Layers,
+    /// What the scene is at the frames beside, for [`Layer::Motion`](crate::layer::Layer::Motion); without it nothing is known of
+    /// that.
+    pub frames: Option<&'w Arc<Frames>>,
 }
 
 impl Job<'_> {

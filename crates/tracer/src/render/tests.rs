@@ -69,7 +69,17 @@ pub fn pixels(world: &World, camera: &Shot, integrator: &AnyIntegrator, size: UV
 pub fn job<'w>(world: &'w World, camera: &'w Shot, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
     let (pattern, filter) = (Sobol {}.pattern(samples), BoxFilter {}.filter(samples));
     assert_eq!(pattern, Pattern::Sobol);
-    Job { world, camera, integrator: &**integrator, filter, pattern, samples, seed: 1, layers: &layer::NONE }
+    Job {
+        world,
+        camera,
+        integrator: &**integrator,
+        filter,
+        pattern,
+        samples,
+        seed: 1,
+        layers: &layer::NONE,
+        frames: None,
+    }
 }
 
 fn near(a: Rgb, b: Rgb, tolerance: f32) -> bool {

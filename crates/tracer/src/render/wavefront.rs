@@ -50,7 +50,7 @@ impl<'j> Engine<'j> {
             through: Vec::new(),
             harvest: Harvest {
                 clamping: job.integrator.clamp().map(Clamping::new),
-                record: (!job.layers.is_empty()).then(|| Record::new(job.layers)),
+                record: (!job.layers.is_empty()).then(|| Record::new(job.layers, job.frames)),
                 ..Harvest::default()
             },
             stack: Vec::new(),

@@ -4,6 +4,7 @@ use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 
 mod arithmetic;
+mod carried;
 mod check;
 #[cfg(test)]
 pub mod contract;

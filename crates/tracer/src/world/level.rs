@@ -157,7 +157,7 @@ impl Level {
 
     /// The object that the shape `number` belongs to, and the shape's number in it.
     #[inline(always)]
-    fn find(&self, number: u32) -> (&Placed, u32) {
+    pub(super) fn find(&self, number: u32) -> (&Placed, u32) {
         if self.firsts.is_empty() {
             return (&self.objects[number as usize], 0);
         }

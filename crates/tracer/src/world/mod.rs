@@ -12,6 +12,7 @@ use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use std::borrow::Cow;
 
 mod areas;
+mod carried;
 mod casters;
 mod differential;
 mod emitters;

@@ -197,6 +197,7 @@ pub fn picture(
         samples,
         seed,
         layers: &layer::NONE,
+        frames: None,
     };
     let pixels = Rect { x: 0, y: 0, width: EDGE, height: EDGE };
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()

@@ -67,6 +67,7 @@ fn threads_and_tiles_cannot_be_seen() {
         samples: SAMPLES,
         seed: 7,
         layers: &layer::NONE,
+        frames: None,
     };
     let region = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
     let whole = bits(&job.render(&Work::first(region, SAMPLES), &Control::default()).unwrap().means());

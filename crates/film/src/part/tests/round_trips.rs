@@ -3,6 +3,7 @@
 use super::super::pack::{pack, unpack};
 use crate::testing::{clamped_tiles, description, place, tile, tiles};
 use crate::*;
+use juggler_imaging::Viewpoint;
 use juggler_tracer::film::{Layout, Rect, Run, Sum, Tile};
 use proptest::prelude::*;
 
@@ -194,4 +195,16 @@ fn a_tile_in_too_many_runs_is_refused() {
     }
     let error = write(&path, &description(region, 1 << 20), [(0, tile)]).unwrap_err();
     assert!(error.to_string().contains("4097 runs"), "{error}");
+}
+
+#[test]
+fn matrices_come_back_to_the_bit() {
+    let (_folder, path) = place("a.jfilm");
+    let number = |i: usize| ((i * 37 % 11) as f32 - 4.3) / 3.0 * 10f32.powi(i as i32 % 9 - 6);
+    let matrix =
+        |first: usize| std::array::from_fn(|row| std::array::from_fn(|column| number(first + row * 4 + column)));
+    let viewpoint = Some(Viewpoint { world_to_camera: matrix(1), world_to_ndc: matrix(50) });
+    let whole = Description { viewpoint, ..description(REGION, 100) };
+    write(&path, &whole, []).unwrap();
+    assert_eq!(*Part::open(&path).unwrap().description(), whole);
 }

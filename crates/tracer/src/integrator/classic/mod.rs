@@ -76,6 +76,7 @@ impl Integrator for Classic {
     }
 
     fn escape(&self, world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
+        emit.miss(ray);
         emit.add(world.background(ray), world.background_group());
     }
 }

@@ -162,6 +162,7 @@ impl Integrator for Path {
 
     fn escape(&self, world: &World, ray: &Ray, path: &PathState, emit: &mut Emit) {
         if !self.flies(world, ray, f32::INFINITY, path, emit) {
+            emit.miss(ray);
             let light = || world.background_pdf(ray.direction);
             let weight = caustic::weight(world, path, ray, light, Met::Background, |_, _| light());
             emit.add(world.background(ray) * weight, world.background_group());

@@ -27,6 +27,7 @@ pub struct Seen<'a> {
 pub fn pass(world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
     if path.trail.passed < MAX_PASSED {
         let inside = crossed(path, vertex.surface.normal.dot(ray.direction) < 0.0, world.interior(vertex));
+        emit.pass(ray);
         let trail = Trail { passed: path.trail.passed + 1, inside, chain: Chain::NONE, ..path.trail };
         emit.follow(vertex.surface.spawn(ray.direction, ray.time), Rgb::WHITE, trail, 0);
     }

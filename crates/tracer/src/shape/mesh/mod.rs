@@ -15,6 +15,7 @@
 
 use super::Derivatives;
 use super::arithmetic::within_floats;
+use super::facet::Facet;
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
 use crate::surface::Surface;
@@ -124,6 +125,11 @@ impl Mesh {
     /// Whether its corners move while the shutter is open.
     pub fn moves(&self) -> bool {
         self.prepared.as_deref().is_some_and(|prepared| prepared.bvh().is_none())
+    }
+
+    /// One of its triangles as it is at a time, once prepared.
+    pub(super) fn facet(&self, triangle: u32, time: f32) -> Option<Facet> {
+        self.prepared.as_deref()?.facet(triangle as usize, time)
     }
 
     /// The arrays, once prepared.

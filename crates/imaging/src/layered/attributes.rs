@@ -1,0 +1,102 @@
+//! The head of an OpenEXR file: attributes, each a name, the name of its type and its value. They stand in a fixed order, since
+//! the bytes of equal pictures must be equal. (OpenEXR file layout, openexr.com.)
+
+use crate::tone::Chromaticities;
+use crate::{ExrCompression, SampleDepth, Viewpoint};
+
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// The version, the flag for names of more than 31 bytes and that for several parts.
+const VERSION: u32 = 2;
+const LONG_NAMES: u32 = 0x400;
+const MULTI_PART: u32 = 0x1000;
+/// The most bytes of a name without that flag, and with it.
+const SHORT: usize = 31;
+const LONG: usize = 255;
+
+/// Magic and version of a file with names of up to `longest` bytes.
+pub fn start(longest: usize, has_several_parts: bool) -> Vec<u8> {
+    let long = if longest > SHORT { LONG_NAMES } else { 0 };
+    let several = if has_several_parts { MULTI_PART } else { 0 };
+    MAGIC.into_iter().chain((VERSION | long | several).to_le_bytes()).collect()
+}
+
+/// The attributes of one part.
+#[derive(Debug, Default)]
+pub struct Attributes {
+    bytes: Vec<u8>,
+}
+
+impl Attributes {
+    /// Any attribute.
+    pub fn put(&mut self, name: &str, kind: &str, value: &[u8]) {
+        self.bytes.extend(name.bytes().filter(|&b| b != 0).take(LONG).chain([0]));
+        self.bytes.extend(kind.bytes().chain([0]));
+        self.bytes.extend((value.len() as u32).to_le_bytes());
+        self.bytes.extend(value);
+    }
+
+    /// What the channels are called, in the order of their names.
+    pub fn channels<'n>(&mut self, names: impl Iterator<Item = &'n str>, depth: SampleDepth) {
+        let pixel_type = if depth == SampleDepth::Half { 1u32 } else { 2 };
+        let mut channels = Vec::new();
+        for name in names {
+            channels.extend(name.bytes().filter(|&b| b != 0).chain([0]));
+            channels.extend([pixel_type, 0, 1, 1].into_iter().flat_map(u32::to_le_bytes));
+        }
+        channels.push(0);
+        self.put("channels", "chlist", &channels);
+    }
+
+    /// What red, green, blue and white are.
+    pub fn chromaticities(&mut self, Chromaticities { red, green, blue, white }: Chromaticities) {
+        let eight = [red, green, blue, white].into_iter().flatten();
+        self.put("chromaticities", "chromaticities", &floats(eight.map(|v| v as f32)));
+    }
+
+    /// Everything else that each part must say: packing, and scanlines of square pixels from the top.
+    pub fn frame(&mut self, width: u32, height: u32, compression: ExrCompression) {
+        let code = match compression {
+            ExrCompression::None => 0,
+            ExrCompression::Rle => 1,
+            ExrCompression::Zip => 3,
+        };
+        let window: Vec<u8> = [0, 0, width - 1, height - 1].into_iter().flat_map(u32::to_le_bytes).collect();
+        self.put("compression", "compression", &[code]);
+        self.put("dataWindow", "box2i", &window);
+        self.put("displayWindow", "box2i", &window);
+        self.put("lineOrder", "lineOrder", &[0]);
+        self.put("pixelAspectRatio", "float", &1f32.to_le_bytes());
+        self.put("screenWindowCenter", "v2f", &[0; 8]);
+        self.put("screenWindowWidth", "float", &1f32.to_le_bytes());
+    }
+
+    /// What a part of several must say, too.
+    pub fn part(&mut self, name: &str, blocks: usize) {
+        self.put("chunkCount", "int", &(blocks as u32).to_le_bytes());
+        self.put("name", "string", name.as_bytes());
+        self.put("type", "string", b"scanlineimage");
+    }
+
+    /// From where it was taken.
+    pub fn viewpoint(&mut self, viewpoint: &Viewpoint) {
+        let Viewpoint { world_to_camera, world_to_ndc } = viewpoint;
+        for (name, matrix) in [("worldToCamera", world_to_camera), ("worldToNDC", world_to_ndc)] {
+            self.put(name, "m44f", &floats(matrix.iter().flatten().copied()));
+        }
+    }
+
+    /// Texts by key; those without a key are left out.
+    pub fn texts<'t>(&mut self, texts: impl Iterator<Item = &'t (String, String)>) {
+        texts.filter(|(key, _)| !key.is_empty()).for_each(|(key, text)| self.put(key, "string", text.as_bytes()));
+    }
+
+    /// All of it, and the zero after it.
+    pub fn finish(mut self) -> Vec<u8> {
+        self.bytes.push(0);
+        self.bytes
+    }
+}
+
+fn floats(values: impl Iterator<Item = f32>) -> Vec<u8> {
+    values.flat_map(f32::to_le_bytes).collect()
+}

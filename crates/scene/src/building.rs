@@ -1,0 +1,75 @@
+//! Scenes that are built by programs.
+
+use crate::Scene;
+use crate::description::{Backdrop, Object};
+use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::material::AnyMaterial;
+use juggler_tracer::texture::AnyTexture;
+
+/// Building a scene.
+impl Scene {
+    /// Adds an object.
+    #[must_use]
+    #[expect(clippy::should_implement_trait, reason = "a scene is built by adding to it")]
+    pub fn add(mut self, object: Object) -> Self {
+        self.description.objects.push(object);
+        self
+    }
+
+    /// Adds a light.
+    #[must_use]
+    pub fn light(mut self, light: impl Into<AnyLight>) -> Self {
+        self.description.lights.push(light.into());
+        self
+    }
+
+    /// Adds a material under a name.
+    #[must_use]
+    pub fn material(mut self, name: impl Into<String>, material: impl Into<AnyMaterial>) -> Self {
+        self.description.materials.insert(name.into(), material.into());
+        self
+    }
+
+    /// Adds a texture under a name.
+    #[must_use]
+    pub fn texture(mut self, name: impl Into<String>, texture: impl Into<AnyTexture>) -> Self {
+        self.description.textures.insert(name.into(), texture.into());
+        self
+    }
+
+    /// Adds a group of objects under a name, to be placed by [`Object::group`].
+    #[must_use]
+    pub fn group(mut self, name: impl Into<String>, objects: impl IntoIterator<Item = Object>) -> Self {
+        self.description.groups.insert(name.into(), objects.into_iter().collect());
+        self
+    }
+
+    /// Adds a camera under a name; the first is used unless another is chosen.
+    #[must_use]
+    pub fn camera(mut self, name: impl Into<String>, camera: impl Into<AnyCamera>) -> Self {
+        self.description.cameras.insert(name.into(), camera.into());
+        self
+    }
+
+    /// Sets what lies behind everything.
+    #[must_use]
+    pub fn background(mut self, background: impl Into<Backdrop>) -> Self {
+        self.description.background = Some(background.into());
+        self
+    }
+
+    /// Sets the picture's size in pixels.
+    #[must_use]
+    pub fn size(mut self, width: u32, height: u32) -> Self {
+        self.description.render.size = [width, height];
+        self
+    }
+
+    /// Sets the samples per pixel.
+    #[must_use]
+    pub fn samples(mut self, samples: u32) -> Self {
+        self.description.render.samples = samples;
+        self
+    }
+}
