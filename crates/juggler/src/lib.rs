@@ -30,6 +30,7 @@ pub mod memory;
 mod part;
 mod picture;
 pub mod prelude;
+pub mod probe;
 mod settings;
 
 pub use denoise::Denoiser;
