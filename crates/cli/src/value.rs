@@ -37,6 +37,12 @@ pub fn crop(text: &str) -> Result<Rect, String> {
     }
 }
 
+/// `0.01`: a chance.
+pub fn chance(text: &str) -> Result<f64, String> {
+    let chance = text.parse().ok().filter(|chance: &f64| *chance > 0.0 && *chance < 1.0);
+    chance.ok_or_else(|| "a chance lies between 0 and 1, such as 0.01".to_owned())
+}
+
 /// `320,180`: column and row of a pixel.
 pub fn pixel(text: &str) -> Result<[u32; 2], String> {
     let wrong = || "a pixel is X,Y from the top left, such as 320,180".to_owned();

@@ -24,6 +24,7 @@
 
 pub mod denoise;
 mod error;
+pub mod estimate;
 mod kinds;
 pub mod layers;
 pub mod memory;

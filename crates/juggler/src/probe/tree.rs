@@ -172,7 +172,8 @@ impl Tree {
         let mut take = |place: &usize| light.iter_mut().zip(of(place).light).for_each(|(sum, part)| *sum -= part);
         next.iter().for_each(|(_, place)| take(place));
         // What is left over without a branch is rounding, unless paths go on further.
-        let has_more = node.depth >= self.depth && scale.share(light).abs() > 1e-9;
+        let is_light = matches!(key, Some(Key::Light(_)));
+        let has_more = !is_light && node.depth >= self.depth && scale.share(light).abs() > 1e-9;
         let others = (!rest.is_empty() || has_more).then(|| Others {
             branches: rest.len(),
             light: scale.light(light),

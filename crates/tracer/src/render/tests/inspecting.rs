@@ -7,12 +7,12 @@ use crate::world::LightSource;
 
 /// A room with a lamp, a sun, a shape that shines, glass, a polished ball, a medium and a mask with holes.
 fn room() -> World {
-    let matt = r#"{"diffuse": {"color": [0.7, 0.6, 0.5]}}"#;
+    let matt = r#"{"diffuse": {"reflectance": [0.7, 0.6, 0.5]}}"#;
     let objects = [
         (r#"{"plane": {}}"#, Vec3::new(0.0, -1.0, 0.0), matt),
         (r#"{"sphere": {"radius": 0.9}}"#, Vec3::new(-1.2, 0.0, 0.0), r#"{"dielectric": {"ior": 1.5}}"#),
         (r#"{"sphere": {"radius": 0.8}}"#, Vec3::new(1.2, 0.0, -0.5), r#"{"conductor": {"roughness": 0.3}}"#),
-        (r#"{"sphere": {"radius": 0.3}}"#, Vec3::new(0.0, 2.0, 0.5), r#"{"emissive": {"color": 1, "intensity": 6}}"#),
+        (r#"{"sphere": {"radius": 0.3}}"#, Vec3::new(0.0, 2.0, 0.5), r#"{"emissive": {"radiance": 1, "scale": 6}}"#),
         (
             r#"{"sphere": {"radius": 0.6}}"#,
             Vec3::new(0.2, -0.2, 1.2),
