@@ -4,12 +4,13 @@ pub mod layers;
 mod parts;
 mod product;
 mod reel;
+mod view;
 
 pub use parts::{Checkpoint, Cut, Shard};
 pub use product::{Encoding, PART_ENDING, Product};
 pub use reel::Reel;
 
-use crate::args::{RenderArgs, ViewArgs};
+use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::progress::Progress;
@@ -231,31 +232,6 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         primaries: args.primaries,
         dither: args.dither,
         ..args.view.settings()
-    }
-}
-
-impl ViewArgs {
-    /// What is wished for beyond what the scene says.
-    pub fn settings(&self) -> Settings {
-        Settings {
-            size: self.size,
-            samples: self.samples,
-            integrator: self.integrator.clone(),
-            max_depth: self.max_depth,
-            camera: self.camera.clone(),
-            shutter: self.shutter,
-            seed: self.seed,
-            ..Settings::default()
-        }
-    }
-
-    /// The frame that is looked at, for an animation of this pace.
-    pub fn frame(&self, frames_per_second: f64) -> f64 {
-        match (self.frame, self.at) {
-            (Some(frame), _) => f64::from(frame),
-            (None, Some(seconds)) => seconds * frames_per_second,
-            (None, None) => 0.0,
-        }
     }
 }
 

@@ -89,12 +89,16 @@ impl Sum {
 
     /// The difference in standard errors, and the chance of one as large.
     fn test(&self) -> (f64, f64) {
-        let error = fun::sqrt_f64(self.variance + self.largest);
+        let (told, seen) = (self.variance + self.largest, self.squares);
+        let error = fun::sqrt_f64(told.min(seen));
         if self.difference == 0.0 || error == 0.0 {
             return (0.0, 1.0);
         }
-        let known =
-            if self.uncertainty > 0.0 { self.variance * self.variance / self.uncertainty - 2.0 } else { MOST_FREEDOM };
+        let known = if told < seen && self.uncertainty > 0.0 {
+            self.variance * self.variance / self.uncertainty - 2.0
+        } else {
+            MOST_FREEDOM
+        };
         let taking_part = if self.fourths > 0.0 { self.squares * self.squares / self.fourths } else { 1.0 };
         let deviation = self.difference / error;
         (deviation, two_sided(deviation, known.min(taking_part).clamp(1.0, MOST_FREEDOM)))

@@ -4,11 +4,16 @@
 //!
 //! Single pixels of few samples are far from normally distributed, and their variances are known by two blocks of samples at worst. So
 //! sums are tested: over blocks of 16 × 16 pixels, over 2 × 2 of these, and so on, and over the whole picture; channel by channel. Such
-//! a sum's difference d is divided by √(Σ v + max d²), where v are the variances of its pixels' means and max d² is the largest
-//! square of a single pixel's difference: one pixel alone, which may be a sample that nobody could have foreseen, never decides. The
-//! quotient is held against Student's t. Its degrees of freedom are those of Welch (1947) with the correction by which pixels of few
-//! degrees do not count twice, (Σ v)² / Σ v² / (ν + 2) - 2, or, where they are fewer, the number of pixels that take part in the
-//! difference, (Σ d²)² / Σ d⁴.
+//! a sum's difference Σ d is divided by the root of the smaller one of two numbers:
+//! - Σ v + max d², where v are the variances of its pixels' means and max d² is the largest square of a single pixel's difference: one
+//!   pixel alone, which may be a sample that nobody could have foreseen, never decides;
+//! - Σ d², which is the variance itself where both are the same: samples that are well spread err less than their blocks tell, since
+//!   what one block errs the next one makes up for. (Sums that are normalised by themselves are no more likely to be large than Student's t,
+//!   whatever the distribution, if only it is symmetric: Efron 1969.)
+//!
+//! The quotient is held against Student's t. Its degrees of freedom are the number of pixels that take part in the difference,
+//! (Σ d²)² / Σ d⁴, or, where variances decide and they are fewer, those of Welch (1947) with the correction by which pixels of few
+//! degrees do not count twice, (Σ v)² / Σ (v² / (ν + 2)) - 2.
 //!
 //! The smallest chance among the blocks is corrected for their number and for the channels (Šidák 1967), whose number counts less the
 //! more alike they err (Nyholt 2004); the whole picture is a question of its own, so that a small change of all of it is found as

@@ -4,6 +4,9 @@ use super::words::{number, percent, vector};
 use crate::format::counted;
 use juggler::probe::{Fireflies, Firefly};
 
+/// Kinds of paths that are told one by one.
+const MOST_KINDS: usize = 8;
+
 /// All of it.
 pub fn to_words(found: &Fireflies) -> String {
     let Fireflies { size: [width, height], integrator, samples, count, excess, sure, .. } = found;
@@ -36,18 +39,35 @@ pub fn to_words(found: &Fireflies) -> String {
         lines.extend(found.pixels.iter().map(row));
     }
     if !found.kinds.is_empty() {
-        lines.push(String::new());
-        lines.push(format!("by kinds of paths ({} looked into)", counted(found.looked_into as u128, "pixel")));
-        lines.push(format!("{:>8} {:>8}  of the light that stands out", "pixels", "share"));
-        lines.extend(
-            found.kinds.iter().map(|kind| format!("{:>8} {:>8}  {}", kind.pixels, percent(kind.share), kind.path)),
-        );
-        let rest = 1.0 - found.kinds.iter().map(|kind| kind.share).sum::<f64>();
-        if found.looked_into < *count {
-            lines.push(format!("{:>8} {:>8}  not looked into", count - found.looked_into, percent(rest)));
-        }
+        lines.extend(kinds(found));
     }
     lines.join("\n")
+}
+
+/// Which kinds of paths do it.
+fn kinds(found: &Fireflies) -> Vec<String> {
+    let (first, others) = found.kinds.split_at(found.kinds.len().min(MOST_KINDS));
+    let looked_into = counted(found.looked_into as u128, "pixel");
+    let mut lines = vec![
+        String::new(),
+        format!("by kinds of paths ({looked_into} looked into)"),
+        format!("{:>8} {:>8}  of the light that stands out", "pixels", "share"),
+    ];
+    lines.extend(first.iter().map(|kind| kind_row(kind.pixels, kind.share, &kind.path)));
+    if !others.is_empty() {
+        let share = others.iter().map(|kind| kind.share).sum();
+        let name = counted(others.len() as u128, "other kind");
+        lines.push(kind_row(others.iter().map(|kind| kind.pixels).sum(), share, &name));
+    }
+    let told: f64 = found.kinds.iter().map(|kind| kind.share).sum();
+    if found.looked_into < found.count {
+        lines.push(kind_row(found.count - found.looked_into, 1.0 - told, "not looked into"));
+    }
+    lines
+}
+
+fn kind_row(pixels: usize, share: f64, path: &str) -> String {
+    format!("{pixels:>8} {:>8}  {path}", percent(share))
 }
 
 fn row(firefly: &Firefly) -> String {
