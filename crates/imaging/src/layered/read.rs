@@ -5,7 +5,7 @@ use crate::{Format, ImageError, Limits};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
-use std::io::{BufRead, Read, Seek};
+use std::io::{BufRead, Seek};
 use std::path::Path;
 
 /// A layer's width, height, and one value after the other for each pixel, row by row.
@@ -57,7 +57,7 @@ fn put((width, values): &mut Values, position: Vec2<usize>, value: [f32; 3]) {
     }
 }
 
-fn one(bytes: &mut (impl Read + BufRead + Seek + Send), name: &str) -> Result<Vec<[f32; 3]>, ExrError> {
+fn one(bytes: &mut (impl BufRead + Seek + Send), name: &str) -> Result<Vec<[f32; 3]>, ExrError> {
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels().required(name);
     let reader = reader.collect_pixels(
         |size, _| room(size),
@@ -67,7 +67,7 @@ fn one(bytes: &mut (impl Read + BufRead + Seek + Send), name: &str) -> Result<Ve
     Ok(image.layer_data.channel_data.pixels.1)
 }
 
-fn three(bytes: &mut (impl Read + BufRead + Seek + Send), names: [&str; 3]) -> Result<Vec<[f32; 3]>, ExrError> {
+fn three(bytes: &mut (impl BufRead + Seek + Send), names: [&str; 3]) -> Result<Vec<[f32; 3]>, ExrError> {
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels();
     let reader = reader.required(names[0]).required(names[1]).required(names[2]).collect_pixels(
         |size, _| room(size),

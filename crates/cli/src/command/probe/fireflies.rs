@@ -24,7 +24,7 @@ pub fn to_words(found: &Fireflies) -> String {
             lines.push(format!("{bright} bright by what they show: their samples agree"));
         }
         None => {
-            lines.push("of fewer than 32 samples a pixel it is not known which are bright by what they show".into())
+            lines.push("of fewer than 32 samples a pixel it is not known which are bright by what they show".into());
         }
     }
     if let Some(clamped) = found.clamped {

@@ -125,7 +125,14 @@ struct Segment {
     /// How many lights were asked for straight.
     straight: usize,
     /// Stretches of ways by balls, and the ball.
-    bent: Vec<Option<(u32, Option<(Vertex, bool)>)>>,
+    bent: Vec<Option<Bend>>,
+}
+
+/// A way by a ball: how many stretches it makes, and the ball, where one sees it.
+#[derive(Clone, Copy)]
+struct Bend {
+    stretches: u32,
+    ball: Option<(Vertex, bool)>,
 }
 
 impl Inspector<'_> {
@@ -192,8 +199,8 @@ impl Inspector<'_> {
             // What stands before the ball hides this way, and says nothing of the others.
             let is_free = hit.is_some() && ray.t_max >= first.t_max;
             let ball = is_free.then(|| (world.vertex(&ray, &hit), bent.legs.len() == 2));
-            let known = way.and_then(|(_, ball)| ball);
-            *way = Some((path.depth + 1 + bent.legs.len() as u32, known.or(ball)));
+            let known = way.and_then(|bend| bend.ball);
+            *way = Some(Bend { stretches: path.depth + 1 + bent.legs.len() as u32, ball: known.or(ball) });
         }
     }
 
@@ -235,10 +242,10 @@ impl Inspector<'_> {
             let depth = queue.paths.get(slot).map_or(0, |path| path.depth);
             let bent = segment.bent.get(slot).copied().flatten().filter(|_| number >= met + segment.straight);
             let stretches = match bent {
-                Some((stretches, _)) => stretches,
+                Some(Bend { stretches, .. }) => stretches,
                 None => depth + 1 + u32::from(number >= met),
             };
-            let by = bent.and_then(|(_, ball)| ball);
+            let by = bent.and_then(|bend| bend.ball);
             let gain = LightGain { group, way, stretches, radiance, asked: number >= met, by };
             let place = segment.places.get(slot).copied().flatten();
             match place.and_then(|place| self.sample.vertices.get_mut(place as usize)) {
