@@ -4,7 +4,7 @@ use crate::Picture;
 use juggler_scene::Names;
 use juggler_scene::compile::Part;
 use juggler_scene::description::Description;
-use juggler_tracer::integrator::{Event, Scattering};
+use juggler_tracer::integrator::{AnyIntegrator, Event, Scattering};
 use juggler_tracer::layer::LightGroup;
 use juggler_tracer::render::{Inspected, LightGain, PathVertex};
 use juggler_tracer::world::{LightSource, LightsApart, Vertex, World};
@@ -43,6 +43,8 @@ pub struct Namer<'p> {
     apart: &'p LightsApart,
     /// Places of the world's lamps among the scene's lights; nothing where the world has lamps of its own.
     lamps: Vec<usize>,
+    /// Whether light from everywhere is counted in: classic pictures have it.
+    has_ambient: bool,
     /// A shape of each material that has no name.
     shapes: BTreeMap<u32, u32>,
     materials: BTreeMap<u32, String>,
@@ -56,7 +58,9 @@ impl<'p> Namer<'p> {
         let world = picture.world();
         let lamps = if lamps.len() == world.lamps().len() { lamps } else { Vec::new() };
         let names = Arc::clone(&picture.compiled().names);
-        Self { scene, world, names, apart, lamps, shapes: BTreeMap::new(), materials: BTreeMap::new() }
+        let is_classic = matches!(picture.compiled().settings.integrator, AnyIntegrator::Classic(_));
+        let has_ambient = is_classic && !world.ambient().is_black();
+        Self { scene, world, names, apart, lamps, has_ambient, shapes: BTreeMap::new(), materials: BTreeMap::new() }
     }
 
     /// Where a shape is described, by its number.
@@ -117,12 +121,11 @@ impl<'p> Namer<'p> {
 
     /// Where light that was added at a place comes from.
     pub fn origin(&self, vertex: &PathVertex, gain: &LightGain) -> Origin {
-        let is_ambient = !self.world.ambient().is_black();
         match (self.apart.source(gain.group).0, &vertex.met) {
             (LightSource::Lamp(number), _) => Origin::Lamp(number),
             (LightSource::Entry(number), _) => Origin::Entry(number),
             (LightSource::Background, _) => Origin::Background,
-            (LightSource::Rest, _) if is_ambient => Origin::Ambient,
+            (LightSource::Rest, _) if self.has_ambient => Origin::Ambient,
             (LightSource::Rest, Some(met)) if !gain.asked => Origin::Entry(self.world.entry_of(met.object)),
             (LightSource::Rest, _) => Origin::Others,
         }
