@@ -17,6 +17,47 @@ pub struct Args {
     pub command: Command,
 }
 
+/// Flags that say what a picture is of and how it is sampled, for all that render.
+#[derive(Clone, Debug, Default, Arguments)]
+pub struct ViewArgs {
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = value::size, help_heading = "Picture")]
+    pub size: Option<[u32; 2]>,
+
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216), help_heading = "Picture")]
+    pub samples: Option<u32>,
+
+    /// How light is followed
+    #[arg(long, value_name = "NAME", help_heading = "Picture")]
+    pub integrator: Option<String>,
+
+    /// How often a path may be mirrored or refracted
+    #[arg(long, value_name = "N", help_heading = "Picture")]
+    pub max_depth: Option<u32>,
+
+    /// One of the scene's cameras
+    #[arg(long, value_name = "NAME", help_heading = "Picture")]
+    pub camera: Option<String>,
+
+    /// One frame of an animation
+    #[arg(long, value_name = "N", conflicts_with = "at", help_heading = "Picture")]
+    pub frame: Option<u32>,
+
+    /// A moment of an animation
+    #[arg(long, value_name = "SECONDS", value_parser = value::seconds, help_heading = "Picture")]
+    pub at: Option<f64>,
+
+    /// When the shutter opens and closes, in frames from the frame's own time, such as 0..0.5: what moves meanwhile is
+    /// blurred [default: the scene's]
+    #[arg(long, value_name = "A..B", value_parser = value::shutter, allow_hyphen_values = true, help_heading = "Picture")]
+    pub shutter: Option<[f64; 2]>,
+
+    /// Another seed, another noise
+    #[arg(long, value_name = "N", help_heading = "Picture")]
+    pub seed: Option<u64>,
+}
+
 /// Flags of `juggler render`.
 #[derive(Clone, Debug, Default, Arguments)]
 pub struct RenderArgs {
@@ -98,13 +139,8 @@ pub struct RenderArgs {
     #[arg(short, long, conflicts_with = "progress", help_heading = "Output")]
     pub quiet: bool,
 
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", value_parser = value::size, help_heading = "Picture")]
-    pub size: Option<[u32; 2]>,
-
-    /// Samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216), help_heading = "Picture")]
-    pub samples: Option<u32>,
+    #[command(flatten)]
+    pub view: ViewArgs,
 
     /// Stop when the relative error of every part of the picture is at most this, 0.02 being 2 %; `--samples` is then the most
     #[arg(long, value_name = "LEVEL", value_parser = value::noise, conflicts_with = "time", help_heading = "Picture")]
@@ -118,43 +154,14 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "noise", "time"], help_heading = "Picture")]
     pub samples_from: Option<String>,
 
-    /// How light is followed
-    #[arg(long, value_name = "NAME", help_heading = "Picture")]
-    pub integrator: Option<String>,
-
-    /// How often a path may be mirrored or refracted
-    #[arg(long, value_name = "N", help_heading = "Picture")]
-    pub max_depth: Option<u32>,
-
-    /// One of the scene's cameras
-    #[arg(long, value_name = "NAME", help_heading = "Picture")]
-    pub camera: Option<String>,
-
-    /// One frame of an animation
-    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "at"], help_heading = "Picture")]
-    pub frame: Option<u32>,
-
     /// Frames A up to, but without, B, as many pictures: `####` in the output's name becomes the number.
     /// Those that are there, made by the same command from the same scene, are left
-    #[arg(long, value_name = "A..B", value_parser = value::frames, conflicts_with = "at", help_heading = "Picture")]
+    #[arg(long, value_name = "A..B", value_parser = value::frames, conflicts_with_all = ["frame", "at"], help_heading = "Picture")]
     pub frames: Option<FrameRange>,
-
-    /// A moment of an animation
-    #[arg(long, value_name = "SECONDS", value_parser = value::seconds, help_heading = "Picture")]
-    pub at: Option<f64>,
-
-    /// When the shutter opens and closes, in frames from the frame's own time, such as 0..0.5: what moves meanwhile is
-    /// blurred [default: the scene's]
-    #[arg(long, value_name = "A..B", value_parser = value::shutter, allow_hyphen_values = true, help_heading = "Picture")]
-    pub shutter: Option<[f64; 2]>,
 
     /// A part of the picture
     #[arg(long, value_name = "X,Y,W,H", value_parser = value::crop, help_heading = "Picture")]
     pub crop: Option<Rect>,
-
-    /// Another seed, another noise
-    #[arg(long, value_name = "N", help_heading = "Picture")]
-    pub seed: Option<u64>,
 
     /// Keep the work in this film part (.jfilm) while it is done, and go on with what is there: nothing is lost
     #[arg(long, value_name = "FILE", help_heading = "Parts")]

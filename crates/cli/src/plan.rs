@@ -4,6 +4,7 @@ pub mod layers;
 mod parts;
 mod product;
 mod reel;
+mod view;
 
 pub use parts::{Checkpoint, Cut, Shard};
 pub use product::{Encoding, PART_ENDING, Product};
@@ -217,19 +218,11 @@ impl Plan {
 /// What is wished for beyond what the scene says. A picture's crop is the picture, a part's is a piece of it.
 fn settings(args: &RenderArgs, product: Product) -> Settings {
     Settings {
-        size: args.size,
-        samples: args.samples,
         limit: match (args.noise, args.time, &args.samples_from) {
             (Some(level), ..) => Limit::Noise(level),
             (_, None, None) => Limit::Samples,
             (None, seconds, _) => Limit::Time { seconds: seconds.unwrap_or(0.0) },
         },
-        integrator: args.integrator.clone(),
-        sampler: None,
-        max_depth: args.max_depth,
-        camera: args.camera.clone(),
-        shutter: args.shutter,
-        seed: args.seed,
         crop: if product == Product::Part { None } else { args.crop },
         curve: args.tone.clone(),
         exposure_stops: args.exposure,
@@ -238,13 +231,14 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         white_balance: args.white_balance,
         primaries: args.primaries,
         dither: args.dither,
+        ..args.view.settings()
     }
 }
 
 impl Moments {
     /// Of a film, all frames where nothing else is said.
     fn new(args: &RenderArgs, output: &str, is_film: bool) -> Result<Self, Failure> {
-        match (args.frames, args.frame, args.at) {
+        match (args.frames, args.view.frame, args.view.at) {
             (Some(_), ..) if output == STANDARD_OUTPUT => {
                 Err(Failure::Wrong("several frames need files: standard output holds one picture".into()))
             }

@@ -37,6 +37,20 @@ pub fn crop(text: &str) -> Result<Rect, String> {
     }
 }
 
+/// `0.01`: a chance.
+pub fn chance(text: &str) -> Result<f64, String> {
+    let chance = text.parse().ok().filter(|chance: &f64| *chance > 0.0 && *chance < 1.0);
+    chance.ok_or_else(|| "a chance lies between 0 and 1, such as 0.01".to_owned())
+}
+
+/// `320,180`: column and row of a pixel.
+pub fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || "a pixel is X,Y from the top left, such as 320,180".to_owned();
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse().map_err(|_| wrong());
+    Ok([number(x)?, number(y)?])
+}
+
 /// Frames from the first up to, but without, the end; an end that is not given is the scene's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameRange {

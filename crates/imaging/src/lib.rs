@@ -27,6 +27,7 @@ pub mod layered;
 pub mod look;
 pub mod output;
 pub mod raster;
+pub mod significance;
 pub mod tone;
 mod viewpoint;
 

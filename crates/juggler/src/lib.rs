@@ -24,6 +24,7 @@
 
 pub mod denoise;
 mod error;
+pub mod estimate;
 mod frames;
 mod kinds;
 pub mod layers;
@@ -31,6 +32,7 @@ pub mod memory;
 mod part;
 mod picture;
 pub mod prelude;
+pub mod probe;
 mod settings;
 mod viewpoint;
 

@@ -21,7 +21,7 @@ pub(crate) const SOFTWARE: &str = concat!("Juggler ", env!("CARGO_PKG_VERSION"))
 /// A scene compiled for one picture: every number is settled.
 #[derive(Clone)]
 pub struct Picture {
-    compiled: Compiled,
+    pub(crate) compiled: Compiled,
     shot: Shot,
     region: Rect,
     tone: Tone,

@@ -9,6 +9,7 @@ mod compare;
 mod convert;
 mod info;
 mod merge;
+mod probe;
 mod relight;
 mod render;
 mod scenes;
@@ -39,6 +40,9 @@ pub enum Command {
     Schema,
     /// Write any readable scene as scene JSON
     Convert(convert::Convert),
+    /// Say why a pixel is as it is, or which pixels are fireflies and why
+    #[command(after_help = probe::EXAMPLES)]
+    Probe(Box<probe::Probe>),
     /// Say how different two pictures are
     Compare(compare::Compare),
     /// List the built-in scenes
@@ -63,6 +67,7 @@ impl Command {
             Self::Relight(relight) => relight.run(),
             Self::Schema => schema::run(),
             Self::Convert(convert) => convert.run(),
+            Self::Probe(probe) => probe.run(),
             Self::Compare(compare) => compare.run(),
             Self::Scenes => scenes::run(),
             #[cfg(feature = "serve")]

@@ -43,7 +43,8 @@ impl Reel {
         if output == STANDARD_OUTPUT {
             return wrong(format!("a film needs a file: {format} cannot go to standard output"));
         }
-        let unfit = [("--bits", args.bits.is_some()), ("--frame", args.frame.is_some()), ("--at", args.at.is_some())];
+        let unfit =
+            [("--bits", args.bits.is_some()), ("--frame", args.view.frame.is_some()), ("--at", args.view.at.is_some())];
         if let Some((flag, _)) = unfit.into_iter().find(|(_, given)| *given) {
             return wrong(format!("{flag} is for pictures; `{output}` is a film of several frames"));
         }

@@ -13,7 +13,7 @@ const MOVING: &str = r##""version": 1,
 fn help_tells_everything() {
     let folder = Folder::new();
     let help = folder.good("--help").stdout;
-    let commands = ["render", "check", "info", "schema", "convert", "compare", "scenes", "bench"];
+    let commands = ["render", "check", "info", "schema", "convert", "probe", "compare", "scenes", "bench"];
     for command in commands {
         assert!(help.contains(command), "{command}");
         let own = folder.good(&format!("{command} --help")).stdout;

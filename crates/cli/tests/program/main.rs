@@ -12,6 +12,7 @@ mod merging;
 mod meshes;
 mod parts;
 mod pictures;
+mod probing;
 mod serving;
 mod signals;
 mod statistics;

@@ -5,11 +5,14 @@
 mod attributes;
 pub(crate) mod exr;
 mod npy;
+mod read;
 
 use crate::atomic::AtomicFile;
 use crate::output::{WriteSeek, whole_file};
 use crate::{ExrCompression, Header, ImageError, Primaries, SampleDepth, Viewpoint};
 use std::path::{Path, PathBuf};
+
+pub use read::read_layer;
 
 /// What stands for a layer's name in the name of a file.
 pub const PLACEHOLDER: &str = "{}";

@@ -135,3 +135,24 @@ fn colours_are_in_the_primaries_that_the_file_names_and_nothing_else_is() {
     let array = std::fs::read(path("albedo.npy")).unwrap();
     assert!(array.ends_with(&value(8, 184).to_le_bytes()));
 }
+
+#[test]
+fn layers_are_read_back_by_their_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, plain) = (folder.path().join("a.exr"), folder.path().join("a.pfm"));
+    written(&path, &header(&[("variance", &["R", "G", "B"]), ("samples", &["Y"])]), &[37]);
+    let colors = read_layer(&path, &["variance.R", "variance.G", "variance.B"]).unwrap().unwrap();
+    assert_eq!((colors.0, colors.1, colors.2.len()), (5, 37, 185));
+    let samples = read_layer(&path, &["samples.Y"]).unwrap().unwrap().2;
+    for pixel in [0, 1, 77, 184] {
+        assert_eq!(colors.2[pixel], [3, 4, 5].map(|channel| value(channel, pixel)));
+        assert_eq!(samples[pixel], [value(6, pixel); 3]);
+    }
+    for missing in [&["albedo.R"][..], &["samples.Y", "variance.R", "variance.G"], &[]] {
+        assert_eq!(read_layer(&path, missing).unwrap(), None);
+    }
+    std::fs::write(&plain, "PF\n1 1\n-1.0\n000000000000").unwrap();
+    assert_eq!(read_layer(&plain, &["samples.Y"]).unwrap(), None);
+    std::fs::write(&path, &std::fs::read(&path).unwrap()[..900]).unwrap();
+    assert!(read_layer(&path, &["samples.Y"]).is_err());
+}

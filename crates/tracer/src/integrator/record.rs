@@ -1,9 +1,10 @@
 //! Recording layers: what samples have beside their radiance.
 
-use super::{Emit, Way};
+use super::{Emit, PathLog, Way};
+use crate::bsdf::Scatter;
 use crate::film::{MASKS, Mark};
 use crate::frames::Frames;
-use crate::layer::{Guide, Layer, Layers, LightGroup};
+use crate::layer::{self, Guide, Layer, Layers, LightGroup};
 use crate::world::{Vertex, World};
 use juggler_math::{DVec2, Ray, Rgb, Vec3};
 use std::sync::Arc;
@@ -29,6 +30,8 @@ pub(crate) struct Record {
     pub planes: Vec<Rgb>,
     /// What each sample shows; nothing where nobody asks.
     pub marks: Vec<Mark>,
+    /// What paths did; nothing where nobody asks.
+    pub log: Option<Box<PathLog>>,
 }
 
 impl Record {
@@ -55,7 +58,13 @@ impl Record {
             is_guided: Vec::new(),
             planes: Vec::new(),
             marks: Vec::new(),
+            log: None,
         }
+    }
+
+    /// Of what paths did, and nothing else.
+    pub fn logging() -> Self {
+        Self { log: Some(Box::default()), ..Self::new(&layer::NONE, None) }
     }
 
     /// For samples of these weights in the filter.
@@ -83,6 +92,9 @@ impl Record {
     /// Light that a sample gathers.
     #[inline]
     pub fn light(&mut self, slot: usize, way: Way, group: LightGroup, radiance: Rgb) {
+        if let Some(log) = &mut self.log {
+            log.lights.push((slot, way, group, radiance));
+        }
         self.add(slot, self.color, radiance);
         self.add(slot, self.ways[way as usize], radiance);
         self.add(slot, self.groups.get(usize::from(group.0)).copied().flatten(), radiance);
@@ -159,6 +171,8 @@ pub struct Sight<'a> {
     pub albedo: Rgb,
     /// Whether it only mirrors or refracts, so that what is behind it is what counts.
     pub is_smooth: bool,
+    /// How most of what is no delta is scattered.
+    pub scatter: Scatter,
 }
 
 fn color(vector: Vec3) -> Rgb {
@@ -196,6 +210,9 @@ impl Emit<'_> {
     pub fn see(&mut self, sight: &Sight) {
         let (slot, trail) = (self.path.slot as usize, &self.path.trail);
         let Some(record) = &mut self.harvest.record else { return };
+        if let Some(log) = &mut record.log {
+            log.see(slot, sight);
+        }
         if self.path.depth == 0 {
             record.see(slot, sight);
         }

@@ -28,6 +28,7 @@ pub use control::{Control, Rays};
 pub use progressive::{Exposure, Hand, expose, is_finished, most_runs};
 pub use rounds::Stop;
 pub use schedule::{BAND_PIXELS, Schedule, Scheduler, Stopped, band_bytes, render};
+pub use wavefront::{Inspected, LightGain, PathVertex, inspect};
 
 /// What a thread, a pass or a machine is given.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,6 +21,7 @@ mod clamping;
 mod cones;
 mod holes;
 mod inside;
+mod inspecting;
 
 pub fn read<T: DeserializeOwned>(json: &str) -> T {
     serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))

@@ -10,10 +10,14 @@ use super::expose::{Start, expose, start};
 use super::exposed::Exposed;
 use super::{Control, Job, Rays, Stopped, Work};
 use crate::film::{Clamped, Rect, Samples, Tile};
-use crate::integrator::{Bent, Clamping, Emit, Harvest, Queue, Record, Way};
-use crate::world::{Shadows, WorldHit};
+use crate::integrator::{Bent, Clamping, Emit, Harvest, PathState, Queue, Record, Way};
+use crate::world::{Shadows, Vertex, WorldHit};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
+
+mod inspect;
+
+pub use inspect::{Inspected, LightGain, PathVertex, inspect};
 
 /// Samples in flight at once.
 const PASS: u64 = 1024;
@@ -144,18 +148,8 @@ impl<'j> Engine<'j> {
     /// Hands each vertex to the integrator; stops between slots when too many rays wait. Returns how many
     /// rays were done.
     fn shade(&mut self, queue: &Queue) -> usize {
-        let Job { world, integrator, .. } = self.job;
         for (i, ((ray, path), hit)) in queue.rays.iter().zip(&queue.paths).zip(&self.hits).enumerate() {
-            let mut emit = Emit::new(&mut self.harvest, path, ray.t_max);
-            if hit.is_some() {
-                let mut vertex = world.vertex(ray, hit);
-                if self.measures {
-                    world.measure(ray, hit, emit.width(), &mut vertex);
-                }
-                integrator.vertex(world, ray, path, &vertex, &mut emit);
-            } else {
-                integrator.escape(world, ray, path, &mut emit);
-            }
+            meet(self.job, self.measures, &mut self.harvest, ray, path, hit);
             let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);
             if last_of_slot && self.harvest.next.len() + self.harvest.pending > WAITING {
                 return i + 1;
@@ -251,6 +245,30 @@ impl<'j> Engine<'j> {
         next.clear();
         self.spare.push(next);
     }
+}
+
+/// Hands one ray to the integrator; returns what it met.
+#[inline(always)]
+fn meet(
+    job: &Job,
+    measures: bool,
+    harvest: &mut Harvest,
+    ray: &Ray,
+    path: &PathState,
+    hit: &WorldHit,
+) -> Option<Vertex> {
+    let Job { world, integrator, .. } = job;
+    let mut emit = Emit::new(harvest, path, ray.t_max);
+    if !hit.is_some() {
+        integrator.escape(world, ray, path, &mut emit);
+        return None;
+    }
+    let mut vertex = world.vertex(ray, hit);
+    if measures {
+        world.measure(ray, hit, emit.width(), &mut vertex);
+    }
+    integrator.vertex(world, ray, path, &vertex, &mut emit);
+    Some(vertex)
 }
 
 /// Cuts a queue between slots into segments of at most [`SEGMENT`] rays; a slot of more than [`GROUP`] rays

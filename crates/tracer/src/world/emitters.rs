@@ -133,6 +133,11 @@ impl Emitters {
         self.shapes.push(Shining { shape, first, parts });
     }
 
+    /// Numbers of the shapes that shine, rising.
+    pub fn glowing(&self) -> impl Iterator<Item = u32> {
+        self.shapes.iter().map(|shining| shining.shape.number)
+    }
+
     /// The chance of all without a place: each counts as much as all that have one.
     fn far_chance(&self) -> f32 {
         let (far, near) = (self.far.len(), usize::from(!self.finite.is_empty()));

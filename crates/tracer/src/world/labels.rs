@@ -14,7 +14,73 @@ pub struct Labels {
     pub background: LightGroup,
 }
 
+/// Something that gives off light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LightSource {
+    /// One of those that are not told apart: there are too many, or it is light from everywhere.
+    Rest,
+    /// A light of the scene, by its number among [`World::lamps`].
+    Lamp(u32),
+    /// An entry of the scene that shines, by number.
+    Entry(u32),
+    /// What lies behind everything.
+    Background,
+}
+
+/// What stands behind the groups of lights of a world in which each light is a group of its own.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LightsApart {
+    /// By number: the light, and the group that it was of.
+    sources: Vec<(LightSource, LightGroup)>,
+}
+
+impl LightsApart {
+    /// The light behind a group, and the group that it was of.
+    pub fn source(&self, group: LightGroup) -> (LightSource, LightGroup) {
+        self.sources.get(usize::from(group.0)).copied().unwrap_or((LightSource::Rest, LightGroup::REST))
+    }
+
+    /// All that are told apart.
+    pub fn all(&self) -> impl Iterator<Item = LightSource> {
+        self.sources.iter().skip(1).map(|(source, _)| *source)
+    }
+
+    /// A group for that light, while there are numbers.
+    fn add(&mut self, source: LightSource, was: LightGroup) -> LightGroup {
+        let Ok(number) = u16::try_from(self.sources.len()) else { return LightGroup::REST };
+        self.sources.push((source, was));
+        LightGroup(number)
+    }
+}
+
 impl World {
+    /// The same world, each of its lights a group of its own: its pictures are the same, and of all light it is known where
+    /// it comes from.
+    #[must_use]
+    pub fn with_lights_apart(mut self) -> (Self, LightsApart) {
+        let mut apart = LightsApart { sources: vec![(LightSource::Rest, LightGroup::REST)] };
+        let background = apart.add(LightSource::Background, self.background_group());
+        for (number, lamp) in (0..).zip(&mut self.lamps) {
+            lamp.group = apart.add(LightSource::Lamp(number), lamp.group);
+        }
+        let mut entries: Vec<(u32, LightGroup)> = Vec::new();
+        for shape in self.emitters.glowing() {
+            let entry = self.entry_of(shape);
+            if entries.last().is_none_or(|(last, _)| *last != entry) {
+                entries.push((entry, self.shape_group(shape)));
+            }
+        }
+        let last = entries.last().map_or(0, |(last, _)| *last as usize + 1);
+        let mut groups = vec![LightGroup::REST; last];
+        for (entry, was) in entries {
+            if let Some(group) = groups.get_mut(entry as usize) {
+                *group = apart.add(LightSource::Entry(entry), was);
+            }
+        }
+        let labels = Labels { groups, background, ..self.labels.clone() };
+        (self.with_labels(labels), apart)
+    }
+
     /// With what belongs together.
     #[must_use]
     pub fn with_labels(mut self, labels: Labels) -> Self {

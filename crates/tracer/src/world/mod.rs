@@ -40,7 +40,7 @@ pub use differential::Differential;
 pub use emitters::{Lighting, Origin, Receiver};
 pub use geometry::Geometry;
 pub use juggler_bvh::{SimdLevel, simd_levels};
-pub use labels::Labels;
+pub use labels::{Labels, LightSource, LightsApart};
 pub use lamp::{Lamp, Source};
 pub use level::{Level, MAX_DEPTH, MAX_OBJECTS, Totals};
 pub use object::{Content, Object};

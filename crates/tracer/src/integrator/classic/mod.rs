@@ -10,7 +10,7 @@
 mod physical;
 
 use super::{Emit, Integrator, PathState, Sight};
-use crate::bsdf::{Cone, Highlight, Phong, cone, fresnel};
+use crate::bsdf::{Cone, Highlight, Phong, Scatter, cone, fresnel};
 use crate::layer::LightGroup;
 use crate::sampler::Sampler;
 use crate::surface::Surface;
@@ -62,7 +62,8 @@ impl Integrator for Classic {
         if emit.records() {
             let is_smooth = phong.diffuse.is_black();
             let (normal, albedo) = (seen.normal, phong.diffuse);
-            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth });
+            let scatter = if is_smooth { Scatter::Specular } else { Scatter::Diffuse };
+            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
         }
         self.ambient(world, &seen, sampler, world.shape_group(vertex.object), emit);
         sampler.skip(1);

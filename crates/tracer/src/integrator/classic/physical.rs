@@ -37,7 +37,8 @@ impl Classic {
         let reflected = if ambient.is_black() { Rgb::BLACK } else { seen.shade.bsdf.albedo(wo) * ambient };
         if emit.records() {
             let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
-            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth: shade.bsdf.is_specular() });
+            let (is_smooth, scatter) = (shade.bsdf.is_specular(), shade.bsdf.scatter());
+            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
         }
         emit.add(seen.shade.emission + reflected, world.shape_group(vertex.object));
         if !seen.shade.bsdf.is_specular() {

@@ -139,7 +139,8 @@ impl Integrator for Path {
         }
         if emit.records() {
             let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
-            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth: shade.bsdf.is_specular() });
+            let (is_smooth, scatter) = (shade.bsdf.is_specular(), shade.bsdf.scatter());
+            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
         }
         if !shade.emission.is_black() {
             let light = || world.light_pdf(&path.trail.receiver(ray.time), ray, vertex);

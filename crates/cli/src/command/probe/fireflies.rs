@@ -1,0 +1,81 @@
+//! Fireflies, in words.
+
+use super::words::{number, percent, vector};
+use crate::format::counted;
+use juggler::probe::{Fireflies, Firefly};
+
+/// Kinds of paths that are told one by one.
+const MOST_KINDS: usize = 8;
+
+/// All of it.
+pub fn to_words(found: &Fireflies) -> String {
+    let Fireflies { size: [width, height], integrator, samples, count, excess, sure, .. } = found;
+    let samples = counted((*samples).into(), "sample");
+    let pixels = counted(*count as u128, "pixel");
+    let stand = if *count == 1 { "stands" } else { "stand" };
+    let mut lines = vec![
+        format!("{width}x{height}, {integrator}, {samples}"),
+        format!("{pixels} {stand} out by chance, with {} of the light", percent(*excess)),
+    ];
+    match sure {
+        Some(0) => {}
+        Some(sure) => {
+            let bright = if *sure == 1 { "1 other is" } else { &format!("{sure} others are") };
+            lines.push(format!("{bright} bright by what they show: their samples agree"));
+        }
+        None => {
+            lines.push("of fewer than 32 samples a pixel it is not known which are bright by what they show".into());
+        }
+    }
+    if let Some(clamped) = found.clamped {
+        lines.push(format!("clamping removed {} of the light", percent(clamped)));
+    }
+    if !found.pixels.is_empty() {
+        lines.push(String::new());
+        lines.push(format!(
+            "{:>11}  {:>9} {:>9} {:>9}  {}",
+            "pixel", "luminance", "around it", "one sample", "its path"
+        ));
+        lines.extend(found.pixels.iter().map(row));
+    }
+    if !found.kinds.is_empty() {
+        lines.extend(kinds(found));
+    }
+    lines.join("\n")
+}
+
+/// Which kinds of paths do it.
+fn kinds(found: &Fireflies) -> Vec<String> {
+    let (first, others) = found.kinds.split_at(found.kinds.len().min(MOST_KINDS));
+    let looked_into = counted(found.looked_into as u128, "pixel");
+    let mut lines = vec![
+        String::new(),
+        format!("by kinds of paths ({looked_into} looked into)"),
+        format!("{:>8} {:>8}  of the light that stands out", "pixels", "share"),
+    ];
+    lines.extend(first.iter().map(|kind| kind_row(kind.pixels, kind.share, &kind.path)));
+    if !others.is_empty() {
+        let share = others.iter().map(|kind| kind.share).sum();
+        let name = counted(others.len() as u128, "other kind");
+        lines.push(kind_row(others.iter().map(|kind| kind.pixels).sum(), share, &name));
+    }
+    let told: f64 = found.kinds.iter().map(|kind| kind.share).sum();
+    if found.looked_into < found.count {
+        lines.push(kind_row(found.count - found.looked_into, 1.0 - told, "not looked into"));
+    }
+    lines
+}
+
+fn kind_row(pixels: usize, share: f64, path: &str) -> String {
+    format!("{pixels:>8} {:>8}  {path}", percent(share))
+}
+
+fn row(firefly: &Firefly) -> String {
+    let Firefly { pixel: [x, y], value, luminance, median, sample, share, path, .. } = firefly;
+    let share = share.map(percent).unwrap_or_default();
+    let path = match (path, sample) {
+        (Some(path), Some(sample)) => format!("{path} (sample {sample})"),
+        _ => vector(*value),
+    };
+    format!("{:>11}  {:>9} {:>9} {share:>10}  {path}", format!("{x},{y}"), number(*luminance), number(*median))
+}

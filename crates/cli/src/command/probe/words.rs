@@ -1,0 +1,162 @@
+//! What is known of a pixel, in words.
+
+use crate::format::counted;
+use juggler::probe::{Branch, Light, Others, Place, Probe, SampleProbe, Share, Sight, Step};
+
+/// Where the columns of the tree begin.
+const COLUMN: usize = 60;
+
+/// All of it.
+pub fn to_words(probe: &Probe) -> String {
+    let Probe { pixel: [x, y], size: [width, height], integrator, samples, not_finite, .. } = probe;
+    let samples = counted((*samples).into(), "sample");
+    let mut lines = vec![format!("pixel {x},{y} of {width}x{height}, {integrator}, {samples}")];
+    lines.push(row("mean", &mean(probe)));
+    if *not_finite > 0 {
+        let lost = counted((*not_finite).into(), "sample");
+        lines.push(row("not finite", &format!("{lost}, counted as black")));
+    }
+    if probe.clamped != 0.0 {
+        lines.push(row("clamped", &format!("{} taken off", number(probe.clamped))));
+    }
+    lines.extend(seen(probe.seen.as_ref()));
+    match &probe.light {
+        Some(light) => lines.extend(of_light(light)),
+        None => lines.push(format!("the integrator `{integrator}` follows no paths of light")),
+    }
+    lines.join("\n")
+}
+
+fn row(key: &str, value: &str) -> String {
+    format!("{key:10} {value}")
+}
+
+fn mean(probe: &Probe) -> String {
+    let value = vector(probe.mean);
+    match probe.standard_error {
+        Some(error) => format!("{value} ± {}", error.map(number).join(" ")),
+        None => value,
+    }
+}
+
+fn seen(sight: Option<&Sight>) -> Vec<String> {
+    let Some(sight) = sight else { return vec![row("sees", "background")] };
+    let Sight { object, part, shape, instance, material, point, normal, distance, uv } = sight;
+    let part = part.as_ref().map(|part| format!(", {part}")).unwrap_or_default();
+    let shape = shape.as_ref().map(|shape| format!(", {shape}")).unwrap_or_default();
+    vec![
+        row("sees", &format!("{object}{part}{shape}, instance {instance}, material {material}")),
+        row("", &format!("at {}, {} away", vector(*point), number(f64::from(*distance)))),
+        row("", &format!("normal {}, uv {}", vector(*normal), uv.map(|value| number(f64::from(value))).join(" "))),
+    ]
+}
+
+fn of_light(light: &Light) -> Vec<String> {
+    let mut lines = vec![row("light", &shares(&light.shares.ways))];
+    lines.push(row("lights", &shares(&light.shares.lights)));
+    if light.shares.groups.len() > 1 {
+        lines.push(row("groups", &shares(&light.shares.groups)));
+    }
+    lines.push(row("stretches", &shares(&light.shares.stretches)));
+    lines.push(String::new());
+    lines.push(format!("{:COLUMN$} {:>8} {:>8}", "paths", "samples", "light"));
+    branch(&light.paths, 0, &mut lines);
+    if !light.brightest.is_empty() {
+        lines.push(String::new());
+        lines.push("brightest samples".to_owned());
+        light.brightest.iter().for_each(|sample| lines.extend(of_sample(sample)));
+    }
+    lines
+}
+
+fn shares(shares: &[Share]) -> String {
+    let told: Vec<String> =
+        shares.iter().map(|Share { name, share, .. }| format!("{name} {}", percent(*share))).collect();
+    if told.is_empty() { "none".into() } else { told.join(", ") }
+}
+
+fn branch(branch: &Branch, depth: usize, lines: &mut Vec<String>) {
+    if depth > 0 {
+        let name = match (&branch.step, &branch.light_from) {
+            (Some(Step { object, event, .. }), _) => format!("{object} {event}"),
+            (None, Some(light)) => format!("> {light}"),
+            (None, None) => String::new(),
+        };
+        lines.push(line(&name, depth, Some(branch.samples), branch.share));
+    }
+    branch.branches.iter().for_each(|next| self::branch(next, depth + 1, lines));
+    if let Some(Others { branches, share, .. }) = &branch.others {
+        let name = match branches {
+            0 => "longer paths".to_owned(),
+            1 => "1 other branch".to_owned(),
+            _ => format!("{branches} other branches"),
+        };
+        lines.push(line(&name, depth + 1, None, *share));
+    }
+}
+
+fn line(name: &str, depth: usize, samples: Option<u32>, share: f64) -> String {
+    let name = format!("{}{name}", "  ".repeat(depth));
+    let samples = samples.map(|samples| samples.to_string()).unwrap_or_default();
+    format!("{name:COLUMN$} {samples:>8} {:>8}", percent(share))
+}
+
+fn of_sample(sample: &SampleProbe) -> Vec<String> {
+    let SampleProbe { sample: number, radiance, share, clamped, path, places, .. } = sample;
+    let share = share.map(|share| format!(", {} of the light", percent(share))).unwrap_or_default();
+    let clamped =
+        if *clamped > 0.0 { format!(", {} clamped", self::number(f64::from(*clamped))) } else { String::new() };
+    let mut lines = vec![format!("  sample {number}: {}{share}{clamped}: {path}", vector(*radiance))];
+    lines.extend(places.iter().enumerate().map(|(number, place)| of_place(number + 1, place)));
+    lines
+}
+
+fn of_place(number: usize, place: &Place) -> String {
+    let what = match &place.step {
+        Some(Step { object, material, event }) => format!("{object} ({material}) {event}"),
+        None => "leaves the world".to_owned(),
+    };
+    let at = place.point.map(|point| format!(" at {}", vector(point))).unwrap_or_default();
+    let lights: Vec<String> = place
+        .lights
+        .iter()
+        .map(|light| format!("; {} {}: {}", light.how, light.light, vector(light.radiance)))
+        .collect();
+    format!("    {number:>2} {what}{at}, throughput {}{}", vector(place.throughput), lights.concat())
+}
+
+/// Numbers with spaces between.
+pub fn vector(values: [f32; 3]) -> String {
+    values.map(|value| number(f64::from(value))).join(" ")
+}
+
+/// With four digits that count: `0.1235`, `12.35`, `1.235e-5`.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !value.is_finite() {
+        return if value.is_finite() { "0".into() } else { value.to_string() };
+    }
+    if !(1e-3..1e5).contains(&size) {
+        return format!("{value:.3e}");
+    }
+    let digits = [1000.0, 100.0, 10.0, 1.0, 0.1, 0.01].iter().take_while(|limit| size < **limit).count();
+    let text = format!("{value:.digits$}");
+    if digits == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
+}
+
+/// `12.3 %`.
+pub fn percent(share: f64) -> String {
+    format!("{:.1} %", share * 100.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let told = [0.0, 0.123_456, 12.345_6, 1.0, -2.5, 123_456.0, 1.5e-5, 99_999.4, 0.001, f64::INFINITY].map(number);
+        let expected = ["0", "0.1235", "12.35", "1", "-2.5", "1.235e5", "1.500e-5", "99999", "0.001", "inf"];
+        assert_eq!(told, expected);
+    }
+}

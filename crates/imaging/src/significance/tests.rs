@@ -1,0 +1,123 @@
+use super::*;
+use juggler_math::testing::Random;
+
+const BLOCKS: u32 = 4;
+
+/// What one sample of a pixel brings.
+type Law = fn(&mut Random, f32) -> f32;
+
+fn even(random: &mut Random, mean: f32) -> f32 {
+    2.0 * mean * random.f32()
+}
+
+/// One sample of 40 has it all.
+fn rare(random: &mut Random, mean: f32) -> f32 {
+    if random.f32() < 0.025 { 40.0 * mean } else { 0.0 }
+}
+
+/// Pixels of 64 samples each, in blocks as a film has them.
+fn estimate(random: &mut Random, size: [u32; 2], law: Law, mean: impl Fn(u32, u32) -> f32) -> Estimate {
+    let mut made = Estimate { width: size[0], height: size[1], mean: vec![], variance: vec![], blocks: vec![] };
+    for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
+        let mut block = || (0..16).map(|_| law(random, mean(x, y))).sum::<f32>() / 16.0;
+        let means: Vec<f32> = (0..BLOCKS).map(|_| block()).collect();
+        let average = means.iter().sum::<f32>() / BLOCKS as f32;
+        let spread = means.iter().map(|mean| (mean - average) * (mean - average)).sum::<f32>();
+        let variance = spread / (BLOCKS * (BLOCKS - 1)) as f32;
+        made.mean.push(Rgb::new(1.0, 0.5, 0.25) * average);
+        made.variance.push(Rgb::new(1.0, 0.25, 0.0625) * variance);
+        made.blocks.push(BLOCKS);
+    }
+    made
+}
+
+fn scene(x: u32, y: u32) -> f32 {
+    if y < 20 { 0.0 } else { 0.2 + ((x / 7 + y / 5) % 4) as f32 }
+}
+
+fn p(a: &Estimate, b: &Estimate) -> f64 {
+    significance(a, b).unwrap().p
+}
+
+/// The chances of pairs of pictures that are the same.
+fn chances(law: Law, count: usize, size: [u32; 2]) -> Vec<f64> {
+    let mut random = Random::new(41);
+    let mut pair = || (estimate(&mut random, size, law, scene), estimate(&mut random, size, law, scene));
+    (0..count).map(|_| pair()).map(|(a, b)| p(&a, &b)).collect()
+}
+
+#[test]
+fn chances_of_equals_are_even_and_false_alarms_as_rare_as_promised() {
+    let even = chances(even, 150, [64, 48]);
+    // A little on the safe side: blocks of all sizes hang together.
+    let mean = even.iter().sum::<f64>() / even.len() as f64;
+    assert!((0.45..0.7).contains(&mean), "{mean}");
+    let below = |chances: &[f64], level: f64| chances.iter().filter(|p| **p <= level).count();
+    assert!(below(&even, 0.01) <= 6 && below(&even, 0.25) >= 15, "{even:?}");
+    let rare = chances(rare, 150, [64, 48]);
+    assert!(below(&rare, 0.01) <= 6 && below(&rare, 0.5) >= 15, "{rare:?}");
+    let small = chances(self::rare, 300, [9, 30]);
+    assert!(below(&small, 0.01) <= 9, "{small:?}");
+}
+
+#[test]
+fn what_differs_is_found() {
+    let mut random = Random::new(42);
+    let size = [96, 64];
+    for law in [even as Law, rare] {
+        let mut make = |mean: &dyn Fn(u32, u32) -> f32| estimate(&mut random, size, law, mean);
+        let whole = make(&|x, y| scene(x, y) * 1.2);
+        let inside = |x: u32, y: u32| (50..60).contains(&x) && (40..50).contains(&y);
+        let part = make(&|x, y| scene(x, y) * if inside(x, y) { 6.0 } else { 1.0 });
+        let dark = make(&|x, y| scene(x, y) + if (5..15).contains(&x) && y < 10 { 0.2 } else { 0.0 });
+        let plain = make(&scene);
+        for other in [&whole, &part, &dark] {
+            let found = significance(&plain, other).unwrap();
+            assert!(found.p < 0.01, "{found:?}");
+            assert!(found.worst.unwrap().deviation < -2.5);
+        }
+        let [x, y, width, height] = significance(&plain, &part).unwrap().worst.unwrap().area;
+        assert!(x <= 55 && x + width > 55 && y <= 45 && y + height > 45, "{x} {y} {width} {height}");
+    }
+}
+
+#[test]
+fn one_pixel_alone_never_decides() {
+    let mut random = Random::new(43);
+    let a = estimate(&mut random, [64, 48], even, scene);
+    let mut b = estimate(&mut random, [64, 48], even, scene);
+    let before = p(&a, &b);
+    for place in [3, 1000, 2999] {
+        b.mean[place] = Rgb::splat(1e6);
+        b.variance[place] = Rgb::BLACK;
+    }
+    assert!(before > 0.01 && p(&a, &b) > 0.01);
+}
+
+#[test]
+fn what_has_no_noise_is_the_same_or_not() {
+    let flat = |value: f32| Estimate {
+        width: 40,
+        height: 20,
+        mean: vec![Rgb::splat(value); 800],
+        variance: vec![Rgb::BLACK; 800],
+        blocks: vec![2; 800],
+    };
+    assert_eq!(p(&flat(1.0), &flat(1.0)), 1.0);
+    assert!(p(&flat(1.0), &flat(1.0f32.next_up())) > 0.1, "rounding");
+    assert!(p(&flat(1.0), &flat(1.01)) < 1e-6);
+    assert_eq!(significance(&flat(1.0), &Estimate { width: 20, height: 40, ..flat(1.0) }), Err(Untested::Sizes));
+    let few = Estimate { blocks: vec![1; 800], ..flat(1.0) };
+    assert_eq!(significance(&flat(1.0), &few), Err(Untested::TooFew));
+    let odd = Estimate { mean: vec![Rgb::splat(f32::NAN); 800], ..flat(1.0) };
+    assert_eq!(significance(&odd, &flat(1.0)), Err(Untested::NotFinite));
+    let none = Estimate { width: 0, height: 0, mean: vec![], variance: vec![], blocks: vec![] };
+    assert_eq!(p(&none, &none), 1.0);
+}
+
+#[test]
+fn degrees_of_freedom_of_few_blocks() {
+    for (blocks, expected) in [(0, 0.0), (1, 0.0), (2, 1.0), (4, 2.0), (8, 2.6849), (1 << 20, 3.5)] {
+        assert!((freedom(blocks) - expected).abs() < 1e-4, "{blocks}: {}", freedom(blocks));
+    }
+}
