@@ -25,11 +25,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "world",
         &["shape", "surface", "medium", "manifold", "material", "bsdf", "emitter", "light", "background", "layer"],
     ),
+    ("frames", &["camera", "layer", "world"]),
     (
         "integrator",
-        &["world", "surface", "manifold", "material", "medium", "bsdf", "light", "sampler", "film", "layer"],
+        &["world", "surface", "manifold", "material", "medium", "bsdf", "light", "sampler", "film", "layer", "frames"],
     ),
-    ("render", &["camera", "sampler", "integrator", "world", "film", "layer"]),
+    ("render", &["camera", "sampler", "integrator", "world", "film", "layer", "frames"]),
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

@@ -14,7 +14,7 @@ const MOST_FREEDOM: f64 = 1e6;
 /// What is known of one channel of a block.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
-    /// Of the differences, their squares and fourth powers, and the largest square.
+    /// Of the differences, their squares and fourth powers, and the largest square, each with what rounding adds.
     difference: f64,
     squares: f64,
     fourths: f64,
@@ -67,12 +67,13 @@ impl Tested {
 impl Sum {
     fn add_pixel(&mut self, [a, b]: [f64; 2], variances: [f64; 2], freedoms: [f64; 2]) {
         let difference = a - b;
-        let square = difference * difference;
+        let rounding = ROUNDING * (a * a + b * b);
+        let square = difference * difference + rounding;
         self.difference += difference;
         self.squares += square;
         self.fourths += square * square;
         self.largest = self.largest.max(square);
-        self.variance += variances[0] + variances[1] + ROUNDING * (a * a + b * b);
+        self.variance += variances[0] + variances[1] + rounding;
         for (variance, freedom) in variances.into_iter().zip(freedoms) {
             self.uncertainty += variance * variance / (freedom + 2.0);
         }

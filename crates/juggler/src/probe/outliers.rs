@@ -15,6 +15,8 @@ const SPREADS: f64 = 6.0;
 /// Shares of the median, and of the picture's mean, that count as spread at least: what nobody sees does not stand out.
 const LEAST_OF_MEDIAN: f64 = 0.05;
 const LEAST_OF_MEAN: f64 = 0.01;
+/// One of so many is among the brightest.
+const BRIGHTEST: usize = 50;
 /// A pixel that is brighter than its neighbours by more than so many of its own standard errors is bright by what it shows: light that
 /// hangs on one sample of many has an error as large as itself.
 const SURE: f64 = 5.0;
@@ -59,8 +61,7 @@ pub fn error(statistics: &Statistics) -> Option<f64> {
 impl Field {
     /// All pixels that stand out.
     pub fn outliers(&self) -> Found {
-        let finite = self.values.iter().filter(|value| value.is_finite());
-        let mean = finite.clone().sum::<f64>() / finite.count().max(1) as f64;
+        let mean = self.usual_mean();
         let mut found = Found::default();
         for place in 0..self.values.len() {
             let Some(outlier) = self.outlier(place, mean) else { continue };
@@ -73,6 +74,14 @@ impl Field {
         }
         found.outliers.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.place.cmp(&b.place)));
         found
+    }
+
+    /// Mean of all but the brightest, which outliers would decide.
+    fn usual_mean(&self) -> f64 {
+        let mut finite: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
+        finite.sort_by(f64::total_cmp);
+        let usual = finite.get(..finite.len() - finite.len() / BRIGHTEST).unwrap_or_default();
+        usual.iter().sum::<f64>() / usual.len().max(1) as f64
     }
 
     fn outlier(&self, place: usize, mean: f64) -> Option<Outlier> {
@@ -140,8 +149,8 @@ mod tests {
     fn the_smallest_pictures_have_no_neighbours() {
         let one = Field { width: 1, height: 1, values: vec![3.0], errors: vec![None] };
         assert_eq!(one.outliers(), Found::default());
-        let dark = field(|x, _| if x == 3 { 1e-12 } else { 0.0 });
-        assert_eq!(dark.outliers().outliers.len(), 0, "the column is its own neighbour");
+        let line = field(|x, _| if (2..5).contains(&x) { 1e-12 } else { 0.0 });
+        assert_eq!(line.outliers().outliers.len(), 0, "a broad line is its own neighbour");
         assert_eq!(field(|_, _| f64::NAN).outliers(), Found::default());
         assert_eq!(median(&mut [3.0, 1.0, 2.0, 10.0]), Some(2.5));
     }
