@@ -95,3 +95,26 @@ fn the_true_error_is_the_one_that_was_asked_for() {
         assert!(worst <= ABOVE, "{name}: the worst tile has {worst} times what was asked for");
     }
 }
+
+/// Tiles stop when their samples seem to agree, which those do early that have not met what is rare and bright: their mean over many seeds
+/// is too dark by that. It must not be by more than the error that was asked for.
+#[test]
+fn the_mean_of_many_seeds_is_within_the_error_that_was_asked_for() {
+    const SEEDS: u64 = 12;
+    let (size, level) = ([48, 32], 0.03);
+    let name = "step-12b";
+    let reference = exposed(name, size, 4096, 99, Limit::Samples);
+    let films: Vec<Film> = (0..SEEDS).map(|seed| exposed(name, size, 4096, seed, Limit::Noise(level))).collect();
+    let mean_of = |film: &Film, place: usize| {
+        let means = film.tile(place).unwrap().means();
+        means.iter().map(|pixel| f64::from(pixel.r + pixel.g + pixel.b)).sum::<f64>() / means.len() as f64 / 3.0
+    };
+    let ended = films.iter().flat_map(Film::counts).filter(|count| (LEAST + 1..4096).contains(count)).count();
+    assert!(ended > 20, "noise ended {ended} tiles");
+    for place in 0..reference.len() {
+        let exact = mean_of(&reference, place);
+        let mean = films.iter().map(|film| mean_of(film, place)).sum::<f64>() / films.len() as f64;
+        let bias = (mean - exact) / (exact * exact + 0.01).sqrt();
+        assert!(bias.abs() < 0.2 * f64::from(level), "tile {place}: {mean} instead of {exact}");
+    }
+}
