@@ -137,7 +137,7 @@ def cryptomatte(ours, kind, names, ids):
     known = (header[f"{key}/hash"], header[f"{key}/conversion"]) == ("MurmurHash3_32", "uint32_to_float32")
     manifest = json.loads(header[f"{key}/manifest"])
     check(f"{kind}: the manifest", known and manifest == {name: f"{name_hash(name):08x}" for name in names}, ", ".join(manifest))
-    ranks = [(ours[p][1][f"{p}.{i}"].view(np.uint32), ours[p][1][f"{p}.{c}"]) for p in layers for i, c in ("RG", "BA")]
+    ranks = [(ours[p][1][f"{p}.{i}"].view(np.uint32), ours[p][1][f"{p}.{c}"]) for p in layers for i, c in (("R", "G"), ("B", "A"))]
     mattes = {name: sum(np.where(rank == name_hash(name), share, 0) for rank, share in ranks) for name in names}
     total, alpha = sum(mattes.values()), layer(ours, "alpha", "A")[..., 0]
     check(f"{kind}: mattes add up to alpha", np.abs(total - alpha).max() < 1e-5, f"within {np.abs(total - alpha).max():.1e}")

@@ -83,12 +83,12 @@ def jewels():
     write("ring", ring())
 
 
-# -- a flacon, a ball to show materials, furniture -----------------------------------------------------------------------
+# -- a bottle, a ball to show materials, furniture -----------------------------------------------------------------------
 
-def flacon():
+def bottle():
     body = cushion((2.6, 3.2, 1.25), (7, 9, 5), steps=64)
-    write("flacon", body)
-    write("flacon-inside", cushion((2.15, 2.62, 0.82), (6, 8, 4), steps=48))
+    write("bottle", body)
+    write("bottle-inside", cushion((2.15, 2.62, 0.82), (6, 8, 4), steps=48))
     knurls = lambda r, y, a: r * (1 + 0.018 * np.clip(3 * np.cos(48 * a), -1, 1) * (r > 0.8) * (y > 0.15) * (y < 1.75))
     cap = [(0, 0), (0.86, 0), (0.86, 0.12), (0.9, 0.16), *[(0.9, 0.16 + 1.6 * i / 30) for i in range(31)],
            (0.9, 1.78), (0.84, 1.86), (0.6, 1.9), (0, 1.9)]
@@ -309,7 +309,7 @@ def put(name, groups):
 def main():
     random = np.random.default_rng(1986)
     jewels()
-    flacon()
+    bottle()
     show_ball()
     stage()
     house_plant(random)
