@@ -25,7 +25,7 @@ SCENES = {
     "depth-of-field": ("300x225", 0.02, 1024),
 }
 REFERENCE = 1024
-STEPS = (0.8, 1.1, 1.5, 2.1, 3.0)
+STEPS = (0.9, 1.4, 2.2)
 
 
 def run(program, *arguments):
