@@ -11,6 +11,9 @@ use juggler_scene::Names;
 use juggler_tracer::layer::{Beside, Guide, Layer, Layers, LightGroup};
 use juggler_tracer::material::MaterialId;
 
+/// The largest factor on the light of a group.
+pub const MOST_GAIN: f32 = 1e6;
+
 /// Something that can be asked for beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aov {

@@ -44,7 +44,7 @@ pub use juggler_math as math;
 pub use juggler_scene as scene;
 pub use juggler_tracer as tracer;
 pub use kinds::{by_name, check_name, names};
-pub use layers::{Aov, LayerSet};
+pub use layers::{Aov, LayerSet, MOST_GAIN};
 pub use part::Origin;
 pub use picture::{Outcome, Picture, View, render, render_to_file};
 pub use settings::{Limit, Settings};

@@ -194,12 +194,13 @@ impl Picture {
 
     /// The scene's fingerprint says nothing of the program, nor of patterns that follow from the number of samples.
     fn complete_fingerprint(&mut self) {
-        let Job { pattern, filter, samples, .. } = self.job();
+        let Job { pattern, filter, samples, layers, .. } = self.job();
         let grid =
             if let Filter::Juggler(side) = filter { format!(", filter for {side} x {side}") } else { String::new() };
         let single = if samples == 1 { ", one through the centre" } else { "" };
+        let halves = if layers.has_halves() { ", halves apart" } else { "" };
         self.fingerprint.insert("juggler", env!("CARGO_PKG_VERSION"));
-        self.fingerprint.insert("pattern of samples", &format!("{pattern:?}{grid}{single}"));
+        self.fingerprint.insert("pattern of samples", &format!("{pattern:?}{grid}{single}{halves}"));
     }
 
     /// What ends it.

@@ -5,7 +5,7 @@
 use juggler::math::Rgb;
 use juggler::scene::Scene;
 use juggler::tracer::render::Control;
-use juggler::{Aov, Picture, Settings};
+use juggler::{Aov, Denoiser, Picture, Settings};
 use std::collections::BTreeMap;
 
 const SIZE: u32 = 32;
@@ -147,4 +147,15 @@ fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
     let pixel = at(-0.4, 0.1);
     assert_eq!(found["object_id.Y"][pixel], 1.0);
     assert!((found["depth.Z"][pixel] - 4.0).abs() < 1e-5, "{}", found["depth.Z"][pixel]);
+}
+
+#[test]
+fn a_picture_whose_halves_are_apart_says_so() {
+    let scene = Scene::from_json(SCENE, "test").unwrap();
+    let [plain, own, oidn] = [None, Some(Denoiser::Own), Some(Denoiser::Oidn)].map(|denoiser| {
+        let picture = Picture::new(&scene, &Settings { denoiser, ..Settings::default() }).unwrap();
+        picture.fingerprint().hash()
+    });
+    assert_ne!(plain, own, "their samples differ");
+    assert_eq!(plain, oidn, "their samples are the same");
 }

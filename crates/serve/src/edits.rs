@@ -1,6 +1,7 @@
 //! What a page may ask for. A page sees and changes the picture; it reads no file but the one scene that the server was
 //! started with, and writes none, but for bookmarks of somebody at this very machine.
 
+use juggler::MOST_GAIN;
 use juggler::scene::built_in_scenes;
 use juggler_session::{Edit, Fly, Orbit, Setting};
 use serde_json::Value;
@@ -13,8 +14,6 @@ pub const MAX_PIXELS: u64 = 1 << 24;
 pub const MAX_SAMPLES: u32 = 1 << 24;
 /// Most threads.
 pub const MAX_THREADS: usize = 256;
-/// The most that a page may make the light of a group stronger by.
-const MAX_GAIN: f32 = 1e6;
 /// Longest name of anything.
 const MAX_NAME: usize = 100;
 /// Where a scene's values may be changed: none of these names a file or decides how much there is.
@@ -74,8 +73,8 @@ fn check_setting(setting: &Setting) -> Result<(), String> {
         }
         Setting::Exposure(stops) if !(-64.0..=64.0).contains(stops) => Err("an exposure is -64 to 64 stops".into()),
         Setting::Gain(name, factors) => {
-            let fits = factors.iter().all(|factor| (0.0..=MAX_GAIN).contains(factor));
-            short(name).and_then(|()| if fits { Ok(()) } else { Err(format!("factors on light are 0 to {MAX_GAIN}")) })
+            let fits = factors.iter().all(|factor| (0.0..=MOST_GAIN).contains(factor));
+            short(name).and_then(|()| if fits { Ok(()) } else { Err(format!("factors on light are 0 to {MOST_GAIN}")) })
         }
         Setting::Integrator(name) | Setting::Sampler(name) | Setting::Tone(name) | Setting::Scheduler(name) => {
             short(name)

@@ -45,7 +45,11 @@ impl Probe {
             let area = tile.pixels();
             let at = (y.saturating_sub(area.y) as usize) * area.width as usize + x.saturating_sub(area.x) as usize;
             probe.samples = tile.count();
-            probe.color = subject.light(&tile).get(at).filter(|_| tile.count() > 0).map(|color| color.to_array());
+            probe.color = subject
+                .light(&tile, &subject.gains())
+                .get(at)
+                .filter(|_| tile.count() > 0)
+                .map(|color| color.to_array());
             probe.noise = relative_error(&tile, at).map(|error| error as f32);
         }
         let center = pixel.map(|at| at as f32 + 0.5);

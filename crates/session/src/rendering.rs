@@ -145,11 +145,12 @@ impl Worker {
         let Some(film) = self.film.clone() else { return };
         let Some(subject) = self.subject.clone() else { return };
         let (size, wanted, toner) = (self.status.size, self.status.samples_wanted, &self.toner);
+        let gains = subject.gains();
         let canvas = self.canvas.get_or_insert_with(|| Canvas::new(&self.draft, size, toner));
         // A whole picture through the pixels' centres looks better than one through one place of each.
         let least = if self.draft.size == size { wanted.min(4) } else { 1 };
         match self.status.channel {
-            Channel::Color => canvas.paint(&film, least, |tile| screen::light(toner, subject.light(tile))),
+            Channel::Color => canvas.paint(&film, least, |tile| screen::light(toner, subject.light(tile, &gains))),
             Channel::Samples => canvas.paint(&film, 0, |tile| screen::samples(tile, wanted)),
             Channel::Noise => canvas.paint(&film, 0, screen::noise),
             _ => {}

@@ -67,14 +67,14 @@ impl Shown {
 
     /// Hands the picture's rows to `rows`, from the top; where there are no samples yet, those of the draft.
     pub fn develop<E>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<(), E> {
-        let (size, draft) = (self.picture().size(), &self.draft);
+        let (size, draft, gains) = (self.picture().size(), &self.draft, self.subject.gains());
         let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| draft.at([x, y], size)).collect() };
         let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows(&row(y))) };
         for (number, band) in (0..).zip(film.layout().bands()) {
             let mut pixels: Vec<Rgb> = (band.y..band.y + band.height).flat_map(row).collect();
             for tile in film.layout().in_band(number).filter_map(|tile| film.tile(tile as usize)) {
                 if tile.count() > 0 {
-                    tile.pixels().copy(&self.subject.light(&tile), &band, &mut pixels);
+                    tile.pixels().copy(&self.subject.light(&tile, &gains), &band, &mut pixels);
                 }
             }
             rows(&pixels)?;

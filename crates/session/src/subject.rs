@@ -11,13 +11,10 @@ use juggler::tracer::camera::AnyCamera;
 use juggler::tracer::film::Tile;
 use juggler::tracer::integrator::AnyIntegrator;
 use juggler::tracer::world::Vertex;
-use juggler::{Picture, Settings, View};
+use juggler::{MOST_GAIN, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// The most that light of a group is made stronger by.
-const MOST_GAIN: f32 = 1e6;
 
 /// What is looked at.
 #[derive(Clone)]
@@ -224,17 +221,20 @@ impl Subject {
         Ok(Change::View)
     }
 
+    fn gain(&self, group: &str) -> Rgb {
+        self.gains.iter().find(|(name, _)| name == group).map_or(Rgb::WHITE, |(_, gain)| *gain)
+    }
+
     /// The factor on each of the picture's groups of lights, by number; nothing where all are 1.
     pub fn gains(&self) -> Vec<Rgb> {
-        let gain = |group: &String| self.gains.iter().find(|(name, _)| name == group).map_or(Rgb::WHITE, |gain| gain.1);
-        let gains: Vec<Rgb> = self.picture.layers().light_groups().iter().map(gain).collect();
+        let groups = self.picture.layers().light_groups();
+        let gains: Vec<Rgb> = groups.iter().map(|group| self.gain(group)).collect();
         if gains.iter().all(|gain| *gain == Rgb::WHITE) { Vec::new() } else { gains }
     }
 
-    /// The light of a tile of the picture's film, groups of lights mixed as they are to be.
-    pub fn light(&self, tile: &Tile) -> Vec<Rgb> {
-        let gains = self.gains();
-        if gains.is_empty() { tile.means() } else { self.picture.layers().relit(tile, &gains) }
+    /// The light of a tile of the picture's film, groups of lights mixed by [`Self::gains`].
+    pub fn light(&self, tile: &Tile, gains: &[Rgb]) -> Vec<Rgb> {
+        if gains.is_empty() { tile.means() } else { self.picture.layers().relit(tile, gains) }
     }
 
     fn see(&mut self, view: View) -> Result<(), String> {
@@ -339,10 +339,7 @@ impl Subject {
         status.tone = name_of(&tone.curve);
         status.exposure = tone.exposure_stops;
         let groups = self.picture.layers().light_groups();
-        let gain = |name: &String| {
-            self.gains.iter().find(|(other, _)| other == name).map_or([1.0; 3], |gain| gain.1.to_array())
-        };
-        status.light_groups = groups.iter().map(|name| (name.clone(), gain(name))).collect();
+        status.light_groups = groups.iter().map(|name| (name.clone(), self.gain(name).to_array())).collect();
         status.cameras = self.cameras();
         status.camera = camera_json(&camera);
         status.interest = self.interest.to_array();

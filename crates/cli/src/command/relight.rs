@@ -6,11 +6,11 @@ use crate::format::duration;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::Encoding;
 use clap::Args;
-use juggler::LayerSet;
 use juggler::film::{self, Description, Wanted};
 use juggler::imaging::{self, Header, Tone};
 use juggler::math::Rgb;
 use juggler::tracer::film::{Rect, Tile};
+use juggler::{LayerSet, MOST_GAIN};
 use std::path::Path;
 use std::time::Instant;
 
@@ -101,7 +101,8 @@ fn gains(text: &str, set: &LayerSet) -> Result<Vec<Rgb>, Failure> {
         let wrong = || Failure::Wrong(format!("`{part}`: a gain is GROUP=FACTOR, such as key=2 or key=#ffc080"));
         let (name, factor) = part.split_once('=').ok_or_else(wrong)?;
         juggler::check_name("group of lights", name.trim(), groups.iter().map(String::as_str))?;
-        let number = factor.trim().parse().ok().filter(|number: &f32| (0.0..=1e6).contains(number)).map(Rgb::splat);
+        let number =
+            factor.trim().parse().ok().filter(|number: &f32| (0.0..=MOST_GAIN).contains(number)).map(Rgb::splat);
         let factor = number.or_else(|| Rgb::from_hex(factor.trim())).ok_or_else(wrong)?;
         let group = groups.iter().position(|group| group == name.trim());
         if let Some(gain) = group.and_then(|group| gains.get_mut(group)) {
