@@ -7,7 +7,7 @@ import { createInterface } from "node:readline";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 
-const PATIENCE = 20000;
+const PATIENCE = 60000;
 
 export const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 

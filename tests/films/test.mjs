@@ -2,7 +2,7 @@
 
 import { strict as assert } from "node:assert";
 import { spawnSync } from "node:child_process";
-import { readFileSync, statSync } from "node:fs";
+import { appendFileSync, readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { basename, join } from "node:path";
 import { startBrowser } from "../browser/harness.mjs";
@@ -25,6 +25,13 @@ function run(command, ...words) {
   return stdout + stderr;
 }
 
+/** Reports what is not looked at, as check.sh does; CI skips nothing that a package gives. */
+function skip(reason) {
+  assert.notEqual(process.env.CI, "true", reason);
+  say(`SKIPPED: ${reason}`);
+  if (process.env.JUGGLER_SKIPPED) appendFileSync(process.env.JUGGLER_SKIPPED, `${reason}\n`);
+}
+
 /** All films, and their frames. */
 function render() {
   // Frames of films are not dithered.
@@ -37,7 +44,7 @@ function render() {
 /** What ffprobe says, and how far the pictures are from the frames. */
 function askFfmpeg() {
   if (spawnSync("ffprobe", ["-version"]).status !== 0) {
-    say("ffprobe is not installed: skipped (apt-get install ffmpeg)");
+    skip("tests/films: ffprobe is not installed (apt-get install ffmpeg)");
     return;
   }
   for (const ending of ["mp4", "apng", "gif"]) {

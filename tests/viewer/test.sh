@@ -45,11 +45,18 @@ finished() { titled "juggler - scene - frame * - 16/16"; }
 shoot() { import -window "$window" "PNG24:$shots/$1.png"; }
 shoot_picture() { import -window "$window" -crop 900x700+0+0 +repage "PNG24:$shots/$1.png"; }
 rmse() { "$juggler" compare "$shots/$1.png" "$shots/$2.png" --tolerance 0 | awk '/^RMSE/ { print $2 }' || true; }
-differ() { awk -v e="$(rmse "$1" "$2")" 'BEGIN { exit !(e > 0.01) }' || fail "$1 and $2 look the same (RMSE $(rmse "$1" "$2"))"; }
-same() { "$juggler" compare "$shots/$1.png" "$shots/$2.png" >/dev/null || fail "$1 and $2 differ (RMSE $(rmse "$1" "$2"))"; }
+differ() { awk -v e="$(rmse "$1" "$2")" 'BEGIN { exit !(e > 0.01) }'; }
+same() { "$juggler" compare "$shots/$1.png" "$shots/$2.png" >/dev/null; }
 
-# As soon as the picture is that of before; the display is drawn to some time after it was asked to.
-again() { shoot_picture back && "$juggler" compare "$shots/start.png" "$shots/back.png" >/dev/null; }
+# The display is drawn to some time after it was asked to, later on a busy machine: screenshots are taken until the picture
+# alone looks like an earlier one, or unlike it.
+shot_like() { shoot_picture "$2" && same "$1" "$2"; }
+shot_unlike() { shoot_picture "$2" && differ "$1" "$2"; }
+like() { until_true shot_like "$1" "$2"; }
+unlike() { until_true shot_unlike "$1" "$2"; }
+shot_again() { cp "$shots/$1.png" "$shots/last.png" && shoot_picture "$1" && same last "$1"; }
+# The picture as soon as it does not change any more.
+steady() { shoot_picture "$1"; until_true shot_again "$1"; }
 small() { [[ $(xdotool getwindowgeometry "$window") == *700x500* ]]; }
 
 point() { xdotool mousemove --window "$window" "$1" "$2"; sleep 0.2; }
@@ -66,6 +73,8 @@ hold() { xdotool keydown "$1"; sleep 0.4; xdotool keyup "$1"; }
 press() { xdotool key "$1"; sleep 0.15; }
 # After something that changes the picture: waits until it is whole again.
 settle() { sleep 0.3; until_true finished; sleep 0.3; }
+# Back to the first picture.
+home() { press Home; point 5 5; like start back; }
 
 find_window() { window=$(xdotool search --pid "$viewer" --name juggler 2>/dev/null | tail -1); [ -n "$window" ]; }
 has_focus() { xdotool windowfocus "$window" 2>/dev/null && [ "$(xdotool getwindowfocus 2>/dev/null)" = "$window" ]; }
@@ -103,63 +112,63 @@ cp "$here/scene.json" scene.json
 open scene.json --threads 2
 until_true finished
 sleep 0.5
+steady start
 shoot first
-shoot_picture start
 say "the first picture: $(title)"
 
-drag 300 300 420 340 1; settle; shoot_picture looked; differ start looked
-press Home; settle; point 5 5; shoot_picture back; same start back
+drag 300 300 420 340 1; settle; unlike start looked
+home
 say "a drag looks around, Home goes back"
 for key in w a e j i u x; do
-  hold "$key"; settle; shoot_picture "key-$key"; differ start "key-$key"
-  press Home; settle
+  hold "$key"; settle; unlike start "key-$key"
+  home
 done
 say "keys move and turn"
-point 450 350; xdotool click 4; xdotool click 4; settle; shoot_picture zoomed; differ start zoomed
-press Home; settle
+point 450 350; xdotool click 4; xdotool click 4; settle; unlike start zoomed
+home
 say "the wheel zooms"
-xdotool keydown shift; drag 300 300 400 300 1; xdotool keyup shift; settle; shoot_picture slid; differ start slid
-press Home; settle
-drag 300 300 400 300 2; settle; shoot_picture slid-middle; differ start slid-middle
-press Home; settle
-press m; drag 300 300 420 340 1; settle; shoot_picture orbited; differ start orbited; differ looked orbited
-press m; press Home; settle
+xdotool keydown shift; drag 300 300 400 300 1; xdotool keyup shift; settle; unlike start slid
+home
+drag 300 300 400 300 2; settle; unlike start slid-middle
+home
+press m; drag 300 300 420 340 1; settle; unlike start orbited; unlike looked orbited
+press m; home
 say "Shift and the middle button slide, M orbits"
-point 480 400; xdotool click --repeat 2 --delay 60 1; settle; shoot_picture framed; differ start framed
-press Home; settle; point 5 5; shoot_picture back; same start back
+point 480 400; xdotool click --repeat 2 --delay 60 1; settle; unlike start framed
+home
 say "a double click brings an object into view"
 
-point 480 380; press p; sleep 0.3; shoot_picture probed; differ start probed
-press Escape; point 5 5; sleep 0.3; shoot_picture back; same start back
-press 3; settle; shoot_picture normals; differ start normals
-press 1; settle; shoot_picture back; same start back
-press bracketright; settle; shoot_picture brighter; differ start brighter
-press bracketleft; settle
+point 480 380; press p; sleep 0.3; unlike start probed
+press Escape; point 5 5; sleep 0.3; like start back
+press 3; settle; unlike start normals
+press 1; like start back
+press bracketright; settle; unlike start brighter
+press bracketleft; like start back
 say "the probe, normals, exposure"
 
-xdotool keydown r; drag 300 300 500 450 1; xdotool keyup r; sleep 1; shoot_picture region; differ start region
-press t; settle; point 5 5; shoot_picture back; same start back
+xdotool keydown r; drag 300 300 500 450 1; xdotool keyup r; unlike start region
+press t; point 5 5; like start back
 say "a region is drawn up and given up"
 
-drag 74 783 420 783 1; settle; shoot_picture later; differ start later
+drag 74 783 420 783 1; settle; unlike start later
 titled "juggler - scene - frame 0 - *" && fail "the slider did not move time: $(title)"
-press Home; settle
+home
 press period; until_true titled "juggler - scene - frame 1 - *"
 press comma; until_true titled "juggler - scene - frame 0 - *"; settle
 press space; until_true titled "juggler - scene - frame [5-9]* - *"; press space; settle
-press Home; settle; point 5 5; shoot_picture back; same start back
+home
 say "the slider, single frames, play and stop"
 
 sed 's/"sphere", "material": "red"/"spere", "material": "red"/' "$here/scene.json" > next && mv next scene.json
-until_true titled "* - error"; sleep 0.4; shoot mistake; shoot_picture mistake-picture; differ start mistake-picture
+until_true titled "* - error"; sleep 0.4; shoot mistake; unlike start mistake-picture
 sed 's/#c02020/#20a040/' "$here/scene.json" > next && mv next scene.json
-until_true finished; settle; shoot_picture green; differ start green; differ mistake-picture green
-cp "$here/scene.json" scene.json; sleep 0.5; settle; shoot_picture back; same start back
+unlike mistake-picture green; settle; unlike start green
+cp "$here/scene.json" scene.json; like start back
 say "a mistake in the file is shown over the picture until it is mended; edits show"
 
-press question; sleep 0.3; shoot help; shoot_picture help-picture; differ start help-picture
-press Escape; sleep 0.3; shoot_picture back; same start back
-press Tab; sleep 0.5; shoot folded; press Tab; sleep 0.5; shoot_picture back; same start back
+press question; sleep 0.3; shoot help; unlike start help-picture
+press Escape; sleep 0.3; like start back
+press Tab; sleep 0.5; shoot folded; press Tab; sleep 0.5; like start back
 say "the keys under ?, the panel folds"
 
 press ctrl+s; until_true test -s scene.png
@@ -168,17 +177,21 @@ press ctrl+s; until_true test -s scene.png
 say "the saved picture is that of juggler render"
 
 ticks() { awk '{ print $14 + $15 }' "/proc/$viewer/stat"; }
-sleep 1; before=$(ticks); sleep 4; used=$(($(ticks) - before))
-[ "$used" -le 4 ] || fail "idle, but 4 seconds took $used ticks of the processor"
+# Other work on the machine may delay the last frame: one quiet stretch of ten is enough.
+idle() { local before; before=$(ticks); sleep 4; used=$(($(ticks) - before)); [ "$used" -le 4 ]; }
+for try in 1 2 3 4 5 6 7 8 9 10; do
+  if idle; then break; fi
+  [ "$try" -lt 10 ] || fail "idle, but 4 seconds took $used ticks of the processor, ten times"
+done
 say "idle: $used ticks of the processor in 4 seconds"
 
 xdotool windowsize "$window" 700 500; until_true small; sleep 1; shoot small
-xdotool windowsize "$window" 1280 800; point 5 5; until_true again
+xdotool windowsize "$window" 1280 800; point 5 5; like start back
 say "the window shrinks and grows"
 
-press g; sleep 3; shoot chooser
+press g; unlike start chooser-picture; sleep 2; shoot chooser
 xdotool type --delay 40 pool; sleep 0.5; shoot chooser-pool; press Return
-until_true titled "juggler - scalablitz-pool - [0-9]*/*"; sleep 1; shoot_picture pool; differ start pool
+until_true titled "juggler - scalablitz-pool - [0-9]*/*"; sleep 1; unlike start pool
 say "another scene: $(title)"
 
 press ctrl+q; ended

@@ -16,7 +16,7 @@ pub fn names<Family: JsonSchema>() -> Vec<String> {
 pub fn by_name<Family: JsonSchema + DeserializeOwned>(what: &str, name: &str) -> Result<Family, Error> {
     check_name(what, name, names::<Family>().iter().map(String::as_str))?;
     let kind = serde_json::json!({ name: {} });
-    serde_json::from_value(kind).map_err(|error| Error::Settings(format!("{what} `{name}`: {error}")))
+    Family::deserialize(&kind).map_err(|error| Error::Settings(format!("{what} `{name}`: {error}")))
 }
 
 /// Refuses a name that is not known, and says which was probably meant.

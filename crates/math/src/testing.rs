@@ -3,6 +3,20 @@
 
 use crate::{Ray, Rgb, Transform, Vec2, Vec3, fun};
 use glam::Mat3;
+use std::fs::OpenOptions;
+use std::io::Write;
+
+/// Reports that a test checks nothing on this machine, with the reason: on standard error, and as a line of the file that
+/// `JUGGLER_SKIPPED` names, which `check.sh` counts and prints at its end.
+#[expect(clippy::print_stderr, reason = "a skipped test is reported to the person who runs it")]
+pub fn skipped(reason: &str) {
+    eprintln!("SKIPPED: {reason}");
+    let Some(path) = std::env::var_os("JUGGLER_SKIPPED") else { return };
+    let file = OpenOptions::new().create(true).append(true).open(path);
+    if let Err(error) = file.and_then(|mut file| file.write_all(format!("{reason}\n").as_bytes())) {
+        eprintln!("cannot write to the file that JUGGLER_SKIPPED names: {error}");
+    }
+}
 
 /// Random numbers from a seed (SplitMix64: Steele, Lea, Flood 2014). The same on every platform, forever.
 #[derive(Clone, Debug)]

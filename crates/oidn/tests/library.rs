@@ -1,7 +1,8 @@
 //! What is said when the library is missing, and, where `JUGGLER_OIDN` says where one is, what it does.
 
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
+#![allow(clippy::unwrap_used, reason = "a test")]
 
+use juggler_math::testing::skipped;
 use juggler_math::{Rgb, Vec3};
 use juggler_oidn::{Error, Library};
 use std::path::Path;
@@ -9,9 +10,7 @@ use std::path::Path;
 /// The library, if the environment says where it is.
 fn library() -> Option<Library> {
     let Some(path) = std::env::var_os("JUGGLER_OIDN") else {
-        eprintln!(
-            "SKIPPED: JUGGLER_OIDN does not say where Open Image Denoise is; docs/denoising.md says where to get it"
-        );
+        skipped("Open Image Denoise: JUGGLER_OIDN does not say where it is; docs/denoising.md says where to get it");
         return None;
     };
     Some(Library::open(Some(Path::new(&path))).unwrap())

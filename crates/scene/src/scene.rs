@@ -6,11 +6,13 @@ use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::moments::Moments;
 use crate::named::Unknown;
+use crate::path::Path as ScenePath;
 use crate::report::{Finding, Problems, plain_io};
 use crate::store::{Bundle, Store};
 use crate::validate::validate;
 use crate::{animate, schema};
 use serde::Deserialize;
+use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -140,7 +142,7 @@ impl Scene {
     /// The same scene with another value at a place, which is a JSON pointer such as `/materials/red/phong/diffuse`;
     /// `null` takes away what is there. The value may be an expression. Objects on the way are made where there are
     /// none. Changes made since a scene was read from a file are lost.
-    pub fn with_value(&self, pointer: &str, value: serde_json::Value) -> Result<Self, SceneError> {
+    pub fn with_value(&self, pointer: &str, value: Value) -> Result<Self, SceneError> {
         let (mut document, frame) = match &self.origin {
             Some(origin) => ((*origin.document).clone(), origin.frame),
             None => {
@@ -272,7 +274,7 @@ impl Scene {
     }
 
     /// The same as a tree.
-    pub fn to_value(&self) -> serde_json::Value {
+    pub fn to_value(&self) -> Value {
         let still = Description { animation: Animation::default(), ..self.description.clone() };
         let mut json = serde_json::to_value(&still).unwrap_or_default();
         schema::tidy(&mut json);
@@ -316,16 +318,40 @@ pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Desc
     let mut validated = validate(tree);
     findings.append(&mut validated.findings);
     let json = validated.json?;
-    if let Ok(description) = Description::deserialize(&json) {
-        return Some(description);
-    }
-    // The schema allows what the types refuse: only a slip of ours can bring us here. Once more, to learn where.
-    match serde_path_to_error::deserialize(json) {
+    match Description::deserialize(&json) {
         Ok(description) => Some(description),
+        // The schema allows what the types refuse: only a slip of ours can bring us here.
         Err(error) => {
-            let path = crate::path::Path::root().join(&error.path().to_string());
-            findings.push(Finding::error(error.into_inner().to_string()).at(&path));
+            findings.push(Finding::error(error.to_string()).at(refused_part(&json)));
             None
         }
     }
+}
+
+/// The smallest section or item of a description that the types refuse by itself; the root if there is none. The same
+/// deserializer serves as for the whole: each one more would double what this crate takes to build.
+fn refused_part(json: &Value) -> ScenePath {
+    let refused = |key: &str, value: Value| {
+        let only = Map::from_iter([("version".to_owned(), 1.into()), (key.to_owned(), value)]);
+        Description::deserialize(&Value::Object(only)).is_err()
+    };
+    let root = ScenePath::root();
+    let Some((key, value)) = json.as_object().into_iter().flatten().find(|(key, value)| refused(key, (*value).clone()))
+    else {
+        return root;
+    };
+    let section = root.key(key);
+    let item = match value {
+        Value::Array(items) => {
+            let at = items.iter().position(|item| refused(key, Value::Array(vec![item.clone()])));
+            at.map(|at| section.index(at))
+        }
+        Value::Object(items) => {
+            let one = |name: &String, item: &Value| Value::Object(Map::from_iter([(name.clone(), item.clone())]));
+            let found = items.iter().find(|(name, item)| refused(key, one(name, item)));
+            found.map(|(name, _)| section.key(name))
+        }
+        _ => None,
+    };
+    item.unwrap_or(section)
 }

@@ -2,8 +2,8 @@
 
 use crate::harness::{Folder, Run, SCENE};
 use std::fs;
-use std::io::Write;
-use std::process::Stdio;
+use std::io::{Read, Write};
+use std::process::{Command, Stdio};
 
 /// What a scene begins with whose background moves.
 const MOVING: &str = r##""version": 1,
@@ -207,19 +207,50 @@ fn a_reader_of_the_picture_that_goes_away_is_a_failure_but_no_panic() {
     assert!(run.status.code() == Some(3) && !message.contains("panicked"), "{:?}: {message}", run.status);
 }
 
+/// Errors that the program and its command-line parser print in color where they may.
+const COLORED: [&str; 2] = ["render jugler", "render ball.json --size 3"];
+
 #[test]
-fn no_colour_without_a_terminal_or_when_not_wanted() {
+fn no_color_without_a_terminal() {
     let folder = Folder::new();
-    for line in ["render jugler", "render ball.json --size 3", "render ball.json --progress bar"] {
-        for no_color in [false, true] {
-            let mut command = folder.command(line);
-            if no_color {
-                command.env("NO_COLOR", "1");
-            }
-            let output = command.output().unwrap();
-            assert!(!output.stderr.contains(&0x1b) && !output.stdout.contains(&0x1b), "{line}");
+    for line in [COLORED[0], COLORED[1], "render ball.json --progress bar"] {
+        let output = folder.command(line).output().unwrap();
+        assert!(!output.stderr.contains(&0x1b) && !output.stdout.contains(&0x1b), "{line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn color_on_a_terminal_unless_it_is_not_wanted() {
+    let folder = Folder::new();
+    for line in COLORED {
+        for (variable, colored) in
+            [(("TERM", "xterm"), true), (("NO_COLOR", ""), true), (("NO_COLOR", "1"), false), (("TERM", "dumb"), false)]
+        {
+            let text = on_a_terminal(folder.command(line).env("TERM", "xterm").env(variable.0, variable.1));
+            assert!(text.contains("error"), "{line} {variable:?}: {text}");
+            assert_eq!(text.contains('\x1b'), colored, "{line} {variable:?}: {text}");
         }
     }
+}
+
+/// Runs a command with standard error on a pseudo-terminal; returns what appeared there.
+#[cfg(unix)]
+fn on_a_terminal(command: &mut Command) -> String {
+    use rustix::fs::{Mode, OFlags};
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&controller).unwrap();
+    unlockpt(&controller).unwrap();
+    let name = ptsname(&controller, Vec::new()).unwrap();
+    let terminal = rustix::fs::open(name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+    let mut child = command.stdout(Stdio::null()).stderr(terminal).spawn().unwrap();
+    // The reading end reports an error as soon as nobody holds the other end any more.
+    command.stderr(Stdio::null());
+    let mut bytes = Vec::new();
+    let _ = fs::File::from(controller).read_to_end(&mut bytes);
+    child.wait().unwrap();
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// A red ball over a floor; the ball moves with the frame.
 pub const SCENE: &str = r#"{
@@ -22,6 +24,24 @@ pub const SCENE: &str = r#"{
         {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": ["=frame / 4", 1, 0]}], "material": "red"},
     ],
 }"#;
+
+/// How long a test waits for what must happen, however busy the machine is.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Polls until the condition holds; fails after two minutes, saying what it waited for.
+pub fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !condition() {
+        assert!(start.elapsed() < PATIENCE, "waited two minutes in vain: {what}");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// Sends a signal (`-INT`, `-KILL`, ...) to a process, unless it has ended already.
+#[cfg(unix)]
+pub fn signal(child: &Child, name: &str) {
+    let _ = Command::new("kill").args([name, &child.id().to_string()]).stderr(Stdio::null()).status();
+}
 
 /// A fresh folder.
 pub struct Folder(tempfile::TempDir);
@@ -57,7 +77,10 @@ impl Folder {
 
     pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_juggler"));
-        command.args(line.split_whitespace()).current_dir(self.0.path()).env_remove("NO_COLOR").stdin(Stdio::null());
+        command.args(line.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
+        for variable in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "FORCE_COLOR"] {
+            command.env_remove(variable);
+        }
         command
     }
 

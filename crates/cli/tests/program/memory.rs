@@ -1,13 +1,17 @@
 //! `--max-memory`: what is foretold is enough, what fits stays inside, what does not is refused with a reason.
 
-#![allow(clippy::print_stderr, reason = "skipped tests are for the reader")]
-
 use crate::harness::{Folder, Run};
+use juggler_math::testing::skipped;
 use serde_json::Value;
 use std::fs;
 use std::process::{Command, Stdio};
 
 const MIB: u64 = 1 << 20;
+
+/// A budget in bytes: what an optimized program needs, in MiB, and the 8 MiB more that unoptimized code takes.
+fn budget(mib: u64) -> u64 {
+    (mib + if cfg!(debug_assertions) { 8 } else { 0 }) * MIB
+}
 
 /// Address space that is reserved and never used, so that `ulimit -v` is to be larger than `--max-memory` by it: the
 /// program and its libraries, and for each thread (those that render and two more) a stack and an arena of glibc.
@@ -49,7 +53,7 @@ fn scene_of(folder: &Folder, mesh: &str) {
 /// Runs under a limit of address space; `None` where there is no such thing.
 fn limited(folder: &Folder, line: &str, budget: u64, threads: u64) -> Option<Run> {
     if !cfg!(target_os = "linux") {
-        eprintln!("skipped: no `ulimit -v` here");
+        skipped("limits of address space: `ulimit -v` is only on Linux");
         return None;
     }
     let kib = (budget + reserved(threads)) / 1024;
@@ -84,26 +88,29 @@ fn a_large_picture_fits_into_little_memory() {
     let folder = Folder::new();
     fs::write(folder.path("empty.json"), r#"{"version": 1, "background": 0.5, "lights": [{"ambient": {}}]}"#).unwrap();
     for output in ["a.png", "a.exr"] {
-        fits(&folder, &format!("empty.json --size 20000x400 --samples 1 -o {output}"), 72 * MIB, 2);
+        fits(&folder, &format!("empty.json --size 20000x400 --samples 1 -o {output}"), budget(72), 2);
     }
     // Whatever the bands.
     let line = "ball.json --size 300x700 --samples 1 -o a.png --threads 2";
     let free = folder.hash(line);
-    assert_eq!(folder.hash(&format!("{line} --max-memory 24M")), free);
+    assert_eq!(folder.hash(&format!("{line} --max-memory {}", budget(24))), free);
 }
 
 #[test]
 fn a_mesh_fits_where_its_tree_does() {
     let folder = with_mesh(400);
     // 320,000 triangles.
-    fits(&folder, "mesh.json --size 64x36 --samples 1 -o a.png", 58 * MIB, 2);
-    let message = folder.bad("render mesh.json --size 64x36 -o a.png --max-memory 32M", 2);
-    assert!(message.contains("mesh `bent.ply`") && message.contains("32.0 MiB"), "{message}");
+    fits(&folder, "mesh.json --size 64x36 --samples 1 -o a.png", budget(58), 2);
+    let message = folder.bad(&format!("render mesh.json --size 64x36 -o a.png --max-memory {}", budget(32)), 2);
+    let said = format!("{}.0 MiB", budget(32) / MIB);
+    assert!(message.contains("mesh `bent.ply`") && message.contains(&said), "{message}");
     // Before it is read: nobody could know otherwise that this one breaks off.
     let whole = fs::read(folder.path("bent.ply")).unwrap();
     fs::write(folder.path("broken.ply"), &whole[..whole.len() - 1]).unwrap();
     scene_of(&folder, "broken.ply");
-    assert!(folder.bad("render mesh.json -o a.png --max-memory 32M", 2).contains("mesh `broken.ply`"));
+    assert!(
+        folder.bad(&format!("render mesh.json -o a.png --max-memory {}", budget(32)), 2).contains("mesh `broken.ply`")
+    );
     assert!(folder.bad("render mesh.json -o a.png --max-memory 1G", 2).contains("end of the file"));
 }
 
@@ -111,13 +118,13 @@ fn a_mesh_fits_where_its_tree_does() {
 fn a_kept_film_fits_or_is_refused_with_advice() {
     let folder = Folder::new();
     let line = "ball.json --size 1000x600 --samples 17 -o a.png --checkpoint a.jfilm --checkpoint-every 1";
-    fits(&folder, line, 84 * MIB, 2);
-    let message = folder.bad(&format!("render {line} --max-memory 40M"), 2);
+    fits(&folder, line, budget(84), 2);
+    let message = folder.bad(&format!("render {line} --max-memory {}", budget(40)), 2);
     for said in ["for the film", "36 bytes a pixel", "--checkpoint", "--shard", "--size"] {
         assert!(message.contains(said), "{said}: {message}");
     }
     // A share of it needs a share of that.
-    fits(&folder, "ball.json --size 1000x600 --samples 17 -o a.jfilm --shard 1/4", 40 * MIB, 2);
+    fits(&folder, "ball.json --size 1000x600 --samples 17 -o a.jfilm --shard 1/4", budget(40), 2);
 }
 
 #[test]
@@ -125,11 +132,11 @@ fn fewer_threads_and_smaller_bands_are_taken_before_anything_is_refused() {
     let folder = Folder::new();
     let line = "ball.json --size 512x2048 --samples 1 -o a.png --threads 16";
     let free = folder.stats(line);
-    let tight = folder.stats(&format!("{line} --max-memory 28M"));
+    let tight = folder.stats(&format!("{line} --max-memory {}", budget(28)));
     let threads = |stats: &Value| stats["threads"].as_u64().unwrap();
     assert!(threads(&free) == 16 && (1..8).contains(&threads(&tight)), "{tight}");
     assert_eq!(tight["film"], free["film"]);
-    assert!(peaks(&tight).0 <= 28 * MIB, "{tight}");
+    assert!(peaks(&tight).0 <= budget(28), "{tight}");
 }
 
 #[test]
@@ -179,7 +186,7 @@ fn a_text_too_large_is_refused_before_it_is_read_as_a_scene() {
     let folder = Folder::new();
     let text = format!(r#"{{"version": 1, "objects": [{}]}}"#, "0,".repeat(200_000));
     fs::write(folder.path("many.json"), text).unwrap();
-    let message = folder.bad("render many.json -o a.png --max-memory 32M", 2);
+    let message = folder.bad(&format!("render many.json -o a.png --max-memory {}", budget(32)), 2);
     assert!(message.contains("the scene `many.json` needs about"), "{message}");
 }
 
@@ -187,13 +194,15 @@ fn a_text_too_large_is_refused_before_it_is_read_as_a_scene() {
 #[test]
 fn a_control_group_holds_it() {
     let folder = with_mesh(300);
-    let command = folder.command("render mesh.json --size 2000x2000 --samples 1 -o a.png --quiet --max-memory 64M");
+    let most = format!("MemoryMax={}", budget(64));
+    let line = format!("render mesh.json --size 2000x2000 --samples 1 -o a.png --quiet --max-memory {}", budget(64));
+    let command = folder.command(&line);
     let mut scoped = Command::new("systemd-run");
-    scoped.args(["--scope", "--quiet", "-p", "MemoryMax=64M", "-p", "MemorySwapMax=0"]).arg(command.get_program());
+    scoped.args(["--scope", "--quiet", "-p", &most, "-p", "MemorySwapMax=0"]).arg(command.get_program());
     scoped.args(command.get_args()).current_dir(folder.path("")).stdin(Stdio::null());
-    let probe = Command::new("systemd-run").args(["--scope", "--quiet", "-p", "MemoryMax=64M", "true"]).output();
+    let probe = Command::new("systemd-run").args(["--scope", "--quiet", "-p", &most, "true"]).output();
     if !probe.is_ok_and(|output| output.status.success()) {
-        eprintln!("skipped: `systemd-run --scope` makes no control group here");
+        skipped("control groups: `systemd-run --scope` makes none here");
         return;
     }
     let run = Run::of(scoped.output().unwrap());

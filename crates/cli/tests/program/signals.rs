@@ -1,12 +1,11 @@
 //! Signals end a render in order: nothing half done is left, and the exit status says so.
 #![cfg(unix)]
 
-use crate::harness::{Folder, Run};
+use crate::harness::{self, Folder, Run, wait_until};
 use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::process::{Command, Stdio};
-use std::thread::sleep;
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 /// Starts a render that would take hours, and sends a signal when its first bytes are there.
@@ -14,14 +13,11 @@ fn interrupt(folder: &Folder, signal: &str) -> Run {
     let mut command = folder.command("render ball.json --samples 1000000 --size 200x200 -o out.png");
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let before = folder.files().len();
+    wait_until("the first bytes of the picture", || folder.files().len() > before);
+    harness::signal(&child, signal);
     let start = Instant::now();
-    while folder.files().len() == before {
-        assert!(start.elapsed() < Duration::from_secs(20), "nothing was begun");
-        sleep(Duration::from_millis(5));
-    }
-    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
     let run = Run::of(child.wait_with_output().unwrap());
-    assert!(start.elapsed() < Duration::from_secs(25), "it took too long to stop");
+    assert!(start.elapsed() < Duration::from_secs(20), "it took too long to stop");
     run
 }
 
@@ -55,7 +51,7 @@ fn progress_comes_while_it_renders() {
     assert_eq!(keys, ["event", "fraction", "rays", "rays_per_second", "eta_seconds"]);
     let fraction = progress["fraction"].as_f64().unwrap();
     assert!(fraction > 0.0 && fraction < 1.0 && progress["rays"].as_f64().unwrap() > 0.0, "{progress}");
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    harness::signal(&child, "-INT");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let mut rest = String::new();
     lines.read_to_string(&mut rest).unwrap();

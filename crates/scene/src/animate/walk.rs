@@ -117,7 +117,7 @@ impl Walk<'_> {
         let checked = validate::part(content, definition, at);
         let sound = checked.findings.is_empty();
         checked.findings.into_iter().for_each(|finding| self.report(finding));
-        T::deserialize(checked.json.filter(|_| sound)?).ok()
+        T::deserialize(&checked.json.filter(|_| sound)?).ok()
     }
 
     /// What an expression gives; `text` is how it is written, with or without a sign in front.

@@ -54,7 +54,7 @@ pub fn camera(scene: &Description, moments: &[Description], name: &str) -> Vec<A
 fn between<T: Serialize + DeserializeOwned>(from: &T, to: &T, share: f64) -> Option<T> {
     let (mut value, to) = (serde_json::to_value(from).ok()?, serde_json::to_value(to).ok()?);
     go(&mut value, &to, share)?;
-    serde_json::from_value(value).ok()
+    T::deserialize(&value).ok()
 }
 
 fn go(value: &mut Value, to: &Value, share: f64) -> Option<()> {

@@ -1,0 +1,61 @@
+//! Nothing that decides a pixel may be computed otherwise on another machine: no function of the platform's own, no
+//! fused multiplication but where its rounding cannot show.
+
+use juggler_golden::rust_files;
+use std::fs;
+use std::path::Path;
+
+/// Crates whose numbers decide pixels.
+const CRATES: [&str; 7] = ["math", "bvh", "tracer", "scene", "film", "imaging", "denoise"];
+
+/// What the standard library takes from the platform, or leaves open; `juggler_math::fun` has all of it.
+const PLATFORM: [&str; 22] = [
+    "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "exp2", "exp_m1",
+    "ln", "ln_1p", "log2", "log10", "powf", "powi", "cbrt", "hypot",
+];
+
+/// Box tests are padded for the rounding of fused multiplication.
+const FUSED: [&str; 1] = ["bvh/src/node.rs"];
+
+/// What comes before the tests of a file, without comments.
+fn code(path: &Path) -> String {
+    let is_test = ["tests.rs", "testing.rs"].iter().any(|name| path.ends_with(name))
+        || path.iter().any(|part| ["tests", "contract", "benches"].iter().any(|t| part == *t));
+    if is_test {
+        return String::new();
+    }
+    let text = fs::read_to_string(path).unwrap();
+    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    code.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// The methods called in a file that its numbers must not depend on.
+fn calls(code: &str, fused: bool) -> Vec<&'static str> {
+    let called = |name: &&str| code.contains(&format!(".{name}(")) || code.contains(&format!("::{name}("));
+    let ours = |name: &&str| {
+        let pure = ["fun", "libm"].iter().any(|module| code.contains(&format!("{module}::{name}(")));
+        pure && !code.contains(&format!(".{name}("))
+    };
+    let platform = PLATFORM.iter().filter(|name| called(name) && !ours(name)).copied();
+    platform.chain((!fused && code.contains("mul_add")).then_some("mul_add")).collect()
+}
+
+#[test]
+fn pixels_do_not_depend_on_the_platforms_functions() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut seen = 0;
+    for path in CRATES.iter().flat_map(|name| rust_files(&crates.join(name).join("src"))) {
+        let name = path.strip_prefix(&crates).unwrap().display().to_string();
+        seen += 1;
+        let found = calls(&code(&path), FUSED.contains(&name.as_str()));
+        assert!(found.is_empty(), "{name} calls {found:?}: take them from juggler_math::fun");
+    }
+    assert!(seen > 100, "the source was not found");
+}
+
+#[test]
+fn the_check_can_fail() {
+    assert_eq!(calls("let y = x.sin() + fun::cos(x);", false), ["sin"]);
+    assert_eq!(calls("f32::powf(x, 2.0); a.mul_add(b, c)", false), ["powf", "mul_add"]);
+    assert_eq!(calls("a.mul_add(b, c)", true), [""; 0]);
+}

@@ -1,0 +1,120 @@
+//! Groups that are stored once and placed often: the same pictures as without, in a fraction of the memory.
+
+use juggler::math::{Vec2, Vec3};
+use juggler::scene::{Object, Scene};
+use juggler::tracer::camera::Perspective;
+use juggler::tracer::material::Phong;
+use juggler::tracer::render::Control;
+use juggler::tracer::shape::{Mesh, MeshData, Sphere};
+use juggler::{Error, Picture, Settings};
+
+fn picture(scene: &Scene, integrator: &str) -> Picture {
+    let settings = Settings { integrator: Some(integrator.into()), ..Settings::default() };
+    Picture::new(scene, &settings).unwrap()
+}
+
+/// The hash of the linear pixels, and their mean.
+fn hash(picture: &Picture) -> (String, [f64; 3]) {
+    let rows = |_: &[_]| Ok::<(), Error>(());
+    let summary = picture.render(Default::default(), &Control::default(), rows).unwrap();
+    (summary.hash, summary.mean)
+}
+
+fn phong(red: f32, transparency: f32) -> Phong {
+    let diffuse = juggler::math::Rgb::new(red, 0.5, 0.3).into();
+    Phong { diffuse, transparency: juggler::math::Rgb::splat(transparency).into(), ..Phong::default() }
+}
+
+/// A floor of 64 by 48 copies of these groups in turn, 64 balls each, moved by powers of two.
+fn balls(groups: &[&str], transparency: f32) -> Scene {
+    let ball = |i: u16| {
+        let ball = Object::new(Sphere { radius: 0.25 }).at(f32::from(i % 8) * 0.5, 0.0, f32::from(i / 8) * 0.5);
+        if i.is_multiple_of(3) { ball.material(phong(0.9, transparency)) } else { ball }
+    };
+    let camera = Perspective {
+        eye: Vec3::new(128.0, 64.0, 64.0),
+        look_at: Vec3::new(128.0, 0.0, -64.0).into(),
+        ..Perspective::default()
+    };
+    let mut scene = Scene::new().size(64, 36).samples(1).camera("main", camera);
+    for group in groups {
+        scene = scene.group(*group, (0..64).map(ball));
+    }
+    for i in 0..3072_u16 {
+        let group = Object::group(groups[usize::from(i) % groups.len()]);
+        let placed = group.at(f32::from(i % 64) * 4.0, 0.0, f32::from(i / 64) * -4.0);
+        scene = scene.add(placed.material(phong(f32::from(i % 7) / 7.0, 0.0)));
+    }
+    scene
+}
+
+/// A group that makes many objects is shared, two groups that make half as many each are not. Seen from where all
+/// differences are exact, nothing is rounded that was not; light's rays start anywhere, and theirs are.
+#[test]
+fn shared_and_expanded_groups_make_the_same_picture() {
+    for (integrator, transparency) in [("albedo", 0.0), ("depth", 0.0), ("classic", 0.0), ("classic", 0.5)] {
+        let scenes = [balls(&["a"], transparency), balls(&["a", "b"], transparency)];
+        let pictures = scenes.map(|scene| picture(&scene, integrator));
+        let geometry = pictures.each_ref().map(|picture| picture.world().geometry());
+        assert_eq!(geometry.map(|geometry| geometry.shapes), [3072 * 64; 2]);
+        assert_eq!(geometry.map(|geometry| geometry.instances), [3072, 0]);
+        assert!(geometry[0].geometry_bytes * 10 < geometry[1].geometry_bytes, "{geometry:?}");
+        let [(shared, mean), (expanded, other)] = pictures.each_ref().map(hash);
+        assert!(shared == expanded || integrator == "classic", "{integrator}: {mean:?} {other:?}");
+        let near = |(a, b): (&f64, &f64)| *a > 0.01 && (a - b).abs() < 1e-5 * a;
+        assert!(mean.iter().zip(&other).all(near), "{integrator}: {mean:?} {other:?}");
+    }
+}
+
+/// A hill of 1,152 triangles.
+fn hill() -> Mesh {
+    const SIDE: u32 = 24;
+    let corner = |i: u32| Vec2::new((i % (SIDE + 1)) as f32, (i / (SIDE + 1)) as f32) / SIDE as f32;
+    let height = |at: Vec2| 4.0 * at.x * (1.0 - at.x) * at.y * (1.0 - at.y);
+    let positions = (0..(SIDE + 1).pow(2)).map(corner).map(|at| Vec3::new(at.x, height(at), at.y)).collect();
+    let square = |i: u32| {
+        let first = i % SIDE + i / SIDE * (SIDE + 1);
+        let [a, b, c, d] = [first, first + 1, first + SIDE + 1, first + SIDE + 2];
+        [[a, c, b], [b, c, d]]
+    };
+    MeshData { positions, triangles: (0..SIDE * SIDE).flat_map(square).collect(), ..MeshData::default() }.into()
+}
+
+/// A hundred copies of what `object` makes, ten by ten, in steps of `step`.
+fn hundred(step: f32, object: impl Fn() -> Object) -> Vec<Object> {
+    (0..100_u16).map(|i| object().at(f32::from(i % 10) * step, 0.0, f32::from(i / 10) * -step)).collect()
+}
+
+#[test]
+fn more_than_a_billion_triangles_need_little_memory() {
+    let scene = Scene::new().size(64, 36).samples(1);
+    let scene = scene.group("hills", hundred(1.0, || Object::new(hill()).rotated(Vec3::Y, 90.0)));
+    let scene = scene.group("country", hundred(10.0, || Object::group("hills").scaled(-1.0).scaled(-1.0)));
+    let scene = hundred(100.0, || Object::group("country")).into_iter().fold(scene, Scene::add);
+    let picture = picture(&scene, "classic");
+    let geometry = picture.world().geometry();
+    assert_eq!((geometry.shapes, geometry.instances), (1_000_000, 100 + 10_000));
+    assert_eq!((geometry.triangles, geometry.unique_triangles), (1_152_000_000, 115_200));
+    assert!(geometry.geometry_bytes + geometry.bvh_bytes < 64 << 20, "{geometry:?}");
+    let (hash, mean) = hash(&picture);
+    assert!(mean.iter().all(|mean| *mean > 0.1), "{mean:?} {hash}");
+}
+
+/// Eighteen groups, each in the next and all worth sharing: the innermost levels are shared, the rest is expanded, for
+/// tracing goes only so deep.
+#[test]
+fn levels_within_levels_have_an_end() {
+    let balls = || (0..15_u16).map(|i| Object::new(Sphere { radius: 0.3 }).at(f32::from(i), 0.0, 0.0));
+    let mut scene = Scene::new().size(16, 9).samples(1).group("g0", balls().chain(balls()));
+    for i in 1..18 {
+        let inner = Object::group(format!("g{}", i - 1)).at(0.0, 0.0, -1.0);
+        scene = scene.group(format!("g{i}"), balls().chain([inner]));
+    }
+    scene = scene.group("many", hundred(40.0, || Object::group("g17")));
+    let scene = hundred(400.0, || Object::group("many")).into_iter().fold(scene, Scene::add);
+    let picture = picture(&scene, "classic");
+    let geometry = picture.world().geometry();
+    assert_eq!(geometry.shapes, 10_000 * (30 + 17 * 15));
+    assert!(geometry.instances > 10_000 && geometry.instances < 10_000 * 16, "{geometry:?}");
+    assert!(hash(&picture).1.iter().all(|mean| *mean > 0.05));
+}

@@ -1,0 +1,21 @@
+//! Tests of the whole: picture hashes, scales, motion blur, noise limits, and the rules of the source tree.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a test fails by panicking and prints its figures"
+)]
+
+mod arithmetic;
+mod blur;
+mod chess;
+mod hashes;
+mod instances;
+mod matrix;
+mod model;
+mod noise;
+mod scales;
+mod tree;

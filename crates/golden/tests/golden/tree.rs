@@ -1,0 +1,164 @@
+//! The tree keeps its own rules: short files, and only licences that anybody may use.
+
+use juggler_golden::rust_files;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Lines a source file may have, tests included.
+const MAX_LINES: usize = 400;
+
+/// The only files with `unsafe` in them, below `crates`.
+const UNSAFE: &[&str] = &["bvh/benches/embree/ffi.rs", "bvh/src/lanes.rs", "bvh/src/pages.rs", "oidn/src/ffi.rs"];
+
+/// What `cargo run` without further words runs: the README's first command.
+const PROGRAM: [&str; 2] = ["juggler-cli", "juggler"];
+
+/// Licences that the project's users can live with (SPDX; an expression needs one fit alternative).
+const LICENCES: &[&str] = &[
+    "MIT",
+    "Apache-2.0",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "ISC",
+    "Zlib",
+    "0BSD",
+    "CC0-1.0",
+    "Unlicense",
+    "Unicode-3.0",
+    "BSL-1.0",
+    "MIT-0",
+    "IJG",
+    "Apache-2.0 WITH LLVM-exception",
+    // As free as the BSD licences; of a fuzzer that a dependency names and nothing builds.
+    "NCSA",
+    // Of typefaces: they may be part of any program, but not be sold alone.
+    "OFL-1.1",
+    "Ubuntu-font-1.0",
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+#[test]
+fn no_source_file_is_long() {
+    let files = rust_files(&root().join("crates"));
+    assert!(files.len() > 50, "the source was not found");
+    let long: Vec<String> = files
+        .iter()
+        .map(|path| (path, std::fs::read_to_string(path).unwrap().lines().count()))
+        .filter(|(_, lines)| *lines > MAX_LINES)
+        .map(|(path, lines)| format!("{}: {lines} lines", path.display()))
+        .collect();
+    assert!(long.is_empty(), "over {MAX_LINES} lines:\n{}", long.join("\n"));
+}
+
+#[test]
+fn unsafe_stands_only_where_it_was_agreed_on() {
+    let crates = root().join("crates");
+    let own = crates.join("golden/tests/golden/tree.rs");
+    let lifted = |path: &Path| path != own && std::fs::read_to_string(path).unwrap().contains("unsafe_code");
+    let mut found: Vec<String> = rust_files(&crates)
+        .iter()
+        .filter(|path| lifted(path))
+        .map(|path| path.strip_prefix(&crates).unwrap().display().to_string())
+        .collect();
+    found.sort();
+    assert_eq!(found, UNSAFE, "files that lift the lint");
+    for entry in std::fs::read_dir(&crates).unwrap() {
+        let folder = entry.unwrap().path();
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let strict = manifest.contains("[lints]\nworkspace = true\n");
+        let denies = manifest.contains("[lints.rust]\nunsafe_code = \"deny\"\n");
+        let lifts = folder.ends_with("bvh") || folder.ends_with("oidn");
+        assert!(if lifts { denies } else { strict }, "lints of {}", folder.display());
+    }
+    let workspace = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    assert!(workspace.contains("[workspace.lints.rust]\nunsafe_code = \"forbid\"\n"));
+}
+
+#[test]
+fn every_dependency_has_a_licence_that_fits() {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked"])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    assert!(packages.len() > 20);
+    let unfit: Vec<String> = packages
+        .iter()
+        .filter(|package| !fits(package["license"].as_str().unwrap_or_default()))
+        .map(|package| format!("{} {}: {}", package["name"], package["version"], package["license"]))
+        .collect();
+    assert!(unfit.is_empty(), "licences that are not on the list:\n{}", unfit.join("\n"));
+}
+
+#[test]
+fn cargo_run_runs_the_program() {
+    let manifests = std::fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
+    let told = manifests.filter_map(|folder| {
+        let text = std::fs::read_to_string(folder.join("Cargo.toml")).ok()?;
+        let value = |key: &str| {
+            text.lines().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix("= ").map(str::to_owned))
+        };
+        value("default-run").map(|run| [value("name").unwrap_or_default(), run].map(|word| word.replace('"', "")))
+    });
+    let told: Vec<[String; 2]> = told.collect();
+    assert_eq!(told, [PROGRAM.map(str::to_owned)], "one default-run, for `cargo run` takes no other");
+}
+
+/// A package that the release profile does not list is hardly optimized. The program is left out: a profile of its own
+/// would keep its symbols.
+#[test]
+fn the_release_profile_lists_every_package_but_the_program() {
+    let workspace = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let profile = workspace.split("[profile.release.package]\n").nth(1).unwrap().split("\n[").next().unwrap();
+    for entry in std::fs::read_dir(root().join("crates")).unwrap() {
+        let manifest = std::fs::read_to_string(entry.unwrap().path().join("Cargo.toml")).unwrap();
+        let name = manifest.lines().find_map(|line| line.strip_prefix("name = ")).unwrap().trim_matches('"');
+        let listed = profile.lines().any(|line| line.starts_with(&format!("{name} = ")));
+        assert_eq!(listed, name != PROGRAM[0], "{name}");
+    }
+}
+
+/// Whether an SPDX expression can be met: of alternatives one, of requirements all.
+fn fits(expression: &str) -> bool {
+    let expression = expression.replace('/', " OR ");
+    split(&expression, " OR ").iter().any(|all| {
+        split(all, " AND ").iter().all(|one| {
+            let one = one.trim();
+            match one.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')) {
+                Some(inner) => fits(inner),
+                None => LICENCES.contains(&one),
+            }
+        })
+    })
+}
+
+/// Splits at a word that stands outside of parentheses.
+fn split<'a>(text: &'a str, word: &str) -> Vec<&'a str> {
+    let (mut parts, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (at, character) in text.char_indices() {
+        match character {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ if depth == 0 && text[at..].starts_with(word) => {
+                parts.push(&text[start..at]);
+                start = at + word.len();
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[start..]);
+    parts
+}
+
+#[test]
+fn the_licence_check_can_fail() {
+    assert!(fits("MIT OR GPL-3.0-only") && fits("MIT/Apache-2.0") && fits("MIT AND ISC"));
+    assert!(fits("(MIT OR Apache-2.0) AND Unicode-3.0") && !fits("(MIT OR Apache-2.0) AND GPL-3.0-only"));
+    assert!(!fits("GPL-3.0-only") && !fits("MIT AND AGPL-3.0-only") && !fits(""));
+}

@@ -1,0 +1,159 @@
+//! Layers beside the picture: known answers, and sums that must agree.
+
+use juggler::math::Rgb;
+use juggler::scene::Scene;
+use juggler::tracer::render::Control;
+use juggler::{Aov, Denoiser, Picture, Settings};
+use std::collections::BTreeMap;
+
+const SIZE: u32 = 32;
+const SAMPLES: u32 = 256;
+
+/// A white wall at z = 0 seen from z = 4, its left half covered by a red card at z = 1; lamps to the left and to the right,
+/// a mirror ball, a glowing ball.
+const SCENE: &str = r#"{
+    "version": 1,
+    "render": {"size": [32, 32], "samples": 256, "integrator": {"path": {"max_depth": 4}}, "filter": "box"},
+    "camera": {"orthographic": {"eye": [0, 0, 4], "look_at": [0, 0, 0], "height": 2}},
+    "background": [0.1, 0.2, 0.3], "background_light_group": "sky",
+    "materials": {"white": {"diffuse": {"reflectance": 0.8}}, "red": {"diffuse": {"reflectance": [0.9, 0.1, 0.1]}}},
+    "lights": [
+        {"point": {"position": [-3, 0, 3], "intensity": 6, "light_group": "key"}},
+        {"point": {"position": [3, 0, 3], "intensity": 4, "color": [0.5, 0.5, 1]}}
+    ],
+    "objects": [
+        {"name": "wall", "shape": {"rectangle": {"size": [1.5, 1.5]}}, "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}], "material": "white"},
+        {"name": "card", "shape": {"rectangle": {"size": [0.53, 1.5]}},
+            "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [-0.485, 0, 1]}], "material": "red"},
+        {"name": "hidden", "visible": false, "shape": "sphere"},
+        {"name": "lamp", "shape": {"sphere": {"radius": 0.2}}, "transform": [{"translate": [0.5, 0.4, 0.5]}],
+            "material": {"emissive": {"radiance": [3, 2, 1]}}, "light_group": "key"},
+        {"shape": {"sphere": {"radius": 0.2}}, "transform": [{"translate": [0.5, -0.4, 0.5]}], "material": {"conductor": {"roughness": 0}}}
+    ]
+}"#;
+
+/// Channels by name, and the picture.
+fn layers(scene: &str, aovs: &[Aov]) -> (BTreeMap<String, Vec<f32>>, Vec<Rgb>) {
+    let scene = Scene::from_json(scene, "test").unwrap();
+    let picture = Picture::new(&scene, &Settings { aovs: aovs.to_vec(), ..Settings::default() }).unwrap();
+    let film = picture.film();
+    picture.expose(&film, &Control::default()).unwrap();
+    let mut rows = Vec::new();
+    picture
+        .develop(&film, |band| {
+            rows.extend_from_slice(band);
+            Ok::<(), ()>(())
+        })
+        .unwrap();
+    let set = picture.layers();
+    let tiles: Vec<_> = (0..film.layout().tiles()).filter_map(|number| film.tile_of(number)).collect();
+    let names = set.headers().into_iter().flat_map(|layer| layer.channels);
+    (names.zip(set.band(&picture.region(), &tiles, None)).collect(), rows)
+}
+
+/// The pixel at these coordinates of the scene's plane.
+fn at(x: f32, y: f32) -> usize {
+    let place = |v: f32| ((v + 1.0) / 2.0 * SIZE as f32) as usize;
+    place(-y) * SIZE as usize + place(x)
+}
+
+#[test]
+fn what_is_seen_is_what_stands_there() {
+    let wanted = [Aov::Alpha, Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Position, Aov::Samples, Aov::NotFinite];
+    let (found, _) = layers(SCENE, &wanted);
+    let value = |channel: &str, pixel: usize| found[channel][pixel];
+    let (card, wall, outside) = (at(-0.4, 0.1), at(0.1, 0.05), at(0.9, 0.9));
+    for (pixel, depth, albedo) in [(card, 3.0, [0.9, 0.1, 0.1]), (wall, 4.0, [0.8; 3])] {
+        assert_eq!(value("alpha.A", pixel), 1.0);
+        assert!((value("depth.Z", pixel) - depth).abs() < 1e-5, "{}", value("depth.Z", pixel));
+        for (channel, expected) in ["R", "G", "B"].into_iter().zip(albedo) {
+            assert!((value(&format!("albedo.{channel}"), pixel) - expected).abs() < 1e-5);
+        }
+        assert_eq!(["X", "Y", "Z"].map(|axis| value(&format!("normal.{axis}"), pixel).round()), [0.0, 0.0, 1.0]);
+        assert!((value("position.Z", pixel) - (4.0 - depth)).abs() < 1e-5);
+        assert_eq!((value("samples.Y", pixel), value("not_finite.Y", pixel)), (SAMPLES as f32, 0.0));
+    }
+    assert_eq!((value("alpha.A", outside), value("depth.Z", outside)), (0.0, f32::INFINITY));
+    assert_eq!(value("albedo.R", outside), 0.0);
+    // The wall is 24 of 32 pixels wide.
+    let row: Vec<f32> = (0..32).map(|x| found["alpha.A"][16 * 32 + x]).collect();
+    assert!(row[4..28].iter().all(|alpha| *alpha == 1.0) && row[3] == 0.0 && row[28] == 0.0, "{row:?}");
+}
+
+#[test]
+fn light_is_the_sum_of_its_ways_and_of_its_groups() {
+    let (found, picture) = layers(SCENE, &[Aov::Emission, Aov::Direct, Aov::Indirect, Aov::LightGroups]);
+    let sums: [&[&str]; 2] =
+        [&["emission", "direct", "indirect"], &["light_group_rest", "light_group_key", "light_group_sky"]];
+    for layers in sums {
+        for (number, channel) in ["R", "G", "B"].into_iter().enumerate() {
+            for (pixel, expected) in picture.iter().enumerate() {
+                let sum: f32 = layers.iter().map(|layer| found[&format!("{layer}.{channel}")][pixel]).sum();
+                let expected = expected.to_array()[number];
+                assert!((sum - expected).abs() <= 1e-5 * expected.max(1.0), "{layers:?} {pixel}: {sum} for {expected}");
+            }
+        }
+    }
+    // The sky behind is seen, the lamp shines, the wall is lit.
+    let value = |layer: &str, pixel: usize| found[&format!("{layer}.R")][pixel];
+    assert!((value("emission", at(0.9, 0.9)) - 0.1).abs() < 1e-6 && value("direct", at(0.9, 0.9)) == 0.0);
+    assert!((value("emission", at(0.5, 0.4)) - 3.0).abs() < 1e-5 && value("light_group_key", at(0.5, 0.4)) > 2.9);
+    assert!(value("emission", at(0.1, 0.0)) == 0.0 && value("direct", at(0.1, 0.0)) > 0.1);
+}
+
+#[test]
+fn masks_are_the_exact_shares_of_pixels() {
+    let (found, _) = layers(SCENE, &[Aov::ObjectId, Aov::MaterialId, Aov::InstanceId, Aov::CryptoObject]);
+    let ids = |pixel: usize| found["object_id.Y"][pixel];
+    assert_eq!([ids(at(0.1, 0.0)), ids(at(-0.4, 0.0)), ids(at(0.5, 0.4)), ids(at(0.5, -0.4))], [1.0, 2.0, 4.0, 5.0]);
+    assert_eq!((ids(at(0.9, 0.9)), found["instance_id.Y"][at(0.5, 0.4)]), (0.0, 3.0));
+    // The card ends at x = -0.22: of the pixels from -0.25 to -0.1875 it covers 0.48.
+    let pixel = at(-0.22, 0.0);
+    let ranks = [("R", "G"), ("B", "A")].map(|(id, share)| {
+        (found[&format!("CryptoObject00.{id}")][pixel].to_bits(), found[&format!("CryptoObject00.{share}")][pixel])
+    });
+    assert!((ranks[0].1 + ranks[1].1 - 1.0).abs() < 1e-6 && ranks[0].1 >= ranks[1].1, "{ranks:?}");
+    assert!((ranks[0].1 - 0.52).abs() < 0.01 && (ranks[1].1 - 0.48).abs() < 0.01, "{ranks:?}");
+    // "wall" and "card" by MurmurHash3.
+    assert_eq!((ranks[0].0, ranks[1].0), (0x7405_f6ae, 0xf160_40d1));
+    assert_eq!(found["CryptoObject00.R"][at(0.1, 0.0)].to_bits(), 0x7405_f6ae);
+}
+
+#[test]
+fn samples_that_a_limit_cuts_are_counted() {
+    let limits = |limits: &str| {
+        let scene = SCENE.replace(r#""max_depth": 4"#, &format!(r#""max_depth": 4 {limits}"#));
+        layers(&scene, &[Aov::Clamped, Aov::NotFinite]).0["clamped.Y"].clone()
+    };
+    let cut = limits(r#", "clamp_direct": 1.5"#);
+    // The lamp shines with 3, all else is darker; a limit of infinity is none, and one of next to nothing cuts what is lit.
+    assert_eq!((cut[at(0.5, 0.4)], cut[at(0.9, 0.9)], cut[at(0.1, 0.05)]), (SAMPLES as f32, 0.0, 0.0));
+    let edge: Vec<f32> = cut.iter().copied().filter(|count| *count > 0.0 && *count < SAMPLES as f32).collect();
+    assert!(edge.len() > 8 && edge.iter().all(|count| count.fract() == 0.0), "{edge:?}");
+    assert!(limits("").iter().all(|count| *count == 0.0));
+    let all = limits(r#", "clamp_direct": 1e-5, "clamp_indirect": 1e-5"#);
+    assert!(all.iter().all(|count| *count > 0.0), "{all:?}");
+}
+
+#[test]
+fn depth_is_measured_from_the_eye_whatever_holes_are_on_the_way() {
+    let card = r#""translate": [-0.485, 0, 1]}], "material": "red"}"#;
+    let holes = r#""translate": [-0.485, 0, 1]}], "material": {"mask": {"opacity": 0, "material": "red"}}}"#;
+    let scene = SCENE.replace(card, holes);
+    assert!(scene != SCENE);
+    let (found, _) = layers(&scene, &[Aov::Depth, Aov::ObjectId]);
+    let pixel = at(-0.4, 0.1);
+    assert_eq!(found["object_id.Y"][pixel], 1.0);
+    assert!((found["depth.Z"][pixel] - 4.0).abs() < 1e-5, "{}", found["depth.Z"][pixel]);
+}
+
+#[test]
+fn a_picture_whose_halves_are_apart_says_so() {
+    let scene = Scene::from_json(SCENE, "test").unwrap();
+    let [plain, own, oidn] = [None, Some(Denoiser::Own), Some(Denoiser::Oidn)].map(|denoiser| {
+        let picture = Picture::new(&scene, &Settings { denoiser, ..Settings::default() }).unwrap();
+        picture.fingerprint().hash()
+    });
+    assert_ne!(plain, own, "their samples differ");
+    assert_eq!(plain, oidn, "their samples are the same");
+}

@@ -1,0 +1,18 @@
+//! The facade as a Rust program uses it: AOVs, denoising, motion vectors, the probe.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a test fails by panicking and prints its figures"
+)]
+
+mod cryptomatte;
+mod gallery;
+mod layers;
+mod motion;
+mod noise;
+mod probe;
+mod viewpoint;

@@ -1,0 +1,75 @@
+//! What the format promises, by example.
+
+use juggler_scene::schema::Schema;
+use juggler_scene::{Scene, SceneError, reference, schema_json};
+use std::fs;
+use std::path::Path;
+
+const SKELETON: &str = r##"{
+  "version": 1, // comments and trailing commas are welcome
+  "render": {"size": [640, 360], "samples": 16, "integrator": {"classic": {}}},
+  "cameras": {"main": {"perspective": {"eye": [0, 2, 6], "look_at": [0, 1, 0], "vertical_fov_degrees": 40}}},
+  "textures": {},
+  "materials": {"red": {"phong": {"diffuse": "#c02020", "shininess": 20}}},
+  "lights": [{"point": {"position": [4, 6, 4], "color": [1, 1, 1], "intensity": 60}}],
+  "groups": {"pair": [{"shape": {"sphere": {}}}, {"shape": {"sphere": {}}, "material": {"phong": {}}}]},
+  "objects": [
+    {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"},
+    {"group": "pair", "transform": [{"scale": 2}, {"rotate": {"axis": [0, 1, 0], "degrees": "=90/3"}}]},
+  ],
+}"##;
+
+fn scene(text: &str) -> Scene {
+    Scene::from_json(text, "test.json").unwrap()
+}
+
+#[test]
+fn the_skeleton_compiles() -> Result<(), SceneError> {
+    let compiled = scene(SKELETON).compile()?;
+    assert_eq!(compiled.world.geometry().shapes, 3);
+    assert_eq!(compiled.cameras.len(), 1);
+    Ok(())
+}
+
+/// The published files say what this program does.
+#[test]
+fn schema_and_reference_are_current() {
+    for (file, text) in [("schema/scene.schema.json", schema_json()), ("docs/scene-format.md", reference())] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file);
+        if std::env::var_os("JUGGLER_BLESS").is_some() {
+            fs::write(&path, &text).unwrap();
+        }
+        let current = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n") == text;
+        assert!(current, "{file} is out of date; to write it anew: JUGGLER_BLESS=1 cargo test -p juggler-scene");
+    }
+}
+
+/// Whatever the reference shows as a whole scene is one, and every link in it leads somewhere.
+#[test]
+fn the_reference_holds_true() {
+    let text = reference();
+    let scenes = text.split("```").skip(1).step_by(2).filter(|block| block.contains("\"version\""));
+    let scenes: Vec<&str> = scenes.filter_map(|block| Some(block.split_once('\n')?.1)).collect();
+    assert_eq!(scenes.len(), 3);
+    for text in scenes {
+        let scene = scene(text);
+        assert!(scene.check().list().is_empty(), "{}", scene.check());
+        assert!(scene.compile().is_ok());
+    }
+    let anchor = |heading: &str| heading.trim().to_lowercase().replace(['`', ':'], "").replace(' ', "-");
+    let anchors: Vec<String> =
+        text.lines().filter(|line| line.starts_with('#')).map(|line| anchor(line.trim_start_matches('#'))).collect();
+    for (i, name) in anchors.iter().enumerate() {
+        assert!(!anchors[..i].contains(name), "two headings are called {name}");
+    }
+    let links: Vec<&str> = text.split("](#").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(links.len() > 100);
+    for link in links {
+        assert!(anchors.iter().any(|anchor| anchor == link), "nothing is at #{link}");
+    }
+    let type_names = Schema::get().definitions().map(|(name, _)| name);
+    for name in type_names.filter(|name| name.chars().skip(1).any(char::is_uppercase)) {
+        assert!(!text.contains(name.as_str()), "the reference speaks Rust: {name}");
+    }
+    assert!(!text.contains("any value") && !text.contains("[`crate"));
+}

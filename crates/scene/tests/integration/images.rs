@@ -1,0 +1,156 @@
+//! Image textures from files: what their numbers mean, how often they are read, what wrong ones say.
+
+use juggler_imaging::{Format, Header, Options, Tone, create};
+use juggler_math::{Image, Rgb, color::srgb_decode};
+use juggler_scene::compile::{Library, estimate_picture};
+use juggler_scene::{Bundle, Scene};
+use juggler_tracer::texture::ColorSpace;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A folder with a picture of two colours in every format, a 16-bit PNG, and a scene beside them.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let pixels = [Rgb::splat(0.25), Rgb::new(0.5, 0.5, 0.25)];
+    let image = Image::from_pixels(16, 16, (0..256).map(|i| pixels[usize::from(i % 16 >= 8)]).collect()).unwrap();
+    for format in Format::ALL {
+        save(&folder.path().join(format!("a.{}", format.ending())), &image, Options::default());
+    }
+    save(&folder.path().join("deep.png"), &image, Options { png_16_bit: true, ..Options::default() });
+    folder
+}
+
+fn save(path: &Path, image: &Image, options: Options) {
+    let tone = Tone { dither: false, ..Tone::default() };
+    let header = Header { options, tone, ..Header::new(image.width(), image.height()) };
+    let mut writer = create(path, Format::from_path(path).unwrap(), &header).unwrap();
+    writer.write_rows(image.pixels()).unwrap();
+    writer.finish().unwrap();
+}
+
+fn scene(file: &str, more: &str) -> String {
+    format!(
+        r#"{{"version": 1, "textures": {{"a": {{"image": {{"file": "{file}"{more}}}}}}},
+            "materials": {{"m": {{"phong": {{"diffuse": "a"}}}}}},
+            "objects": [{{"shape": "sphere", "material": "m"}}]}}"#
+    )
+}
+
+fn load(folder: &TempDir, file: &str, more: &str) -> Scene {
+    let path = folder.path().join("scene.json");
+    fs::write(&path, scene(file, more)).unwrap();
+    Scene::load(path).unwrap()
+}
+
+fn complaint(folder: &TempDir, file: &str) -> String {
+    let text = load(folder, file, "").compile().map(|_| ()).unwrap_err().to_string();
+    text.replace(&format!("{}/", folder.path().display()), "")
+}
+
+#[test]
+fn levels_are_srgb_and_floats_linear_unless_told_otherwise() {
+    let folder = folder();
+    let red =
+        |name: &str, space| Library::default().picture(&folder.path().join(name), space).unwrap().texel(0, 0, 0)[0];
+    // Files with levels were written by the curve of sRGB.
+    for (name, tolerance) in [("a.png", 0.002), ("a.jpg", 0.01), ("a.webp", 0.002), ("deep.png", 1e-5)] {
+        assert!((red(name, ColorSpace::Auto) - 0.25).abs() < tolerance, "{name} {}", red(name, ColorSpace::Auto));
+        assert_eq!(red(name, ColorSpace::Auto), red(name, ColorSpace::Srgb));
+        let level = red(name, ColorSpace::Linear);
+        assert!((srgb_decode(level) - 0.25).abs() < tolerance, "{name} {level}");
+    }
+    for name in ["a.exr", "a.hdr", "a.pfm"] {
+        assert_eq!((red(name, ColorSpace::Auto), red(name, ColorSpace::Linear)), (0.25, 0.25), "{name}");
+        assert!((red(name, ColorSpace::Srgb) - srgb_decode(0.25)).abs() < 1e-7, "{name}");
+    }
+}
+
+#[test]
+fn pictures_are_kept_in_as_few_bytes_as_hold_them() {
+    let folder = folder();
+    for (name, bytes_a_sample) in [("a.png", 1), ("a.jpg", 1), ("a.exr", 2), ("a.hdr", 2), ("deep.png", 4)] {
+        let path = folder.path().join(name);
+        let pixels = Library::default().picture(&path, ColorSpace::Auto).unwrap();
+        assert_eq!(pixels.bytes(), 341 * 3 * bytes_a_sample, "{name}");
+        let estimate = estimate_picture(&path);
+        assert!(estimate.kept >= pixels.bytes() as u64 && estimate.peak > estimate.kept, "{name}: {estimate:?}");
+        assert!(estimate.kept <= 4 * pixels.bytes() as u64 + 64, "{name}: {estimate:?}");
+    }
+    assert_eq!(estimate_picture(Path::new("none.png")), Default::default());
+}
+
+#[test]
+fn a_picture_is_read_once_and_is_part_of_the_fingerprint() {
+    let folder = folder();
+    let scene = load(&folder, "a.png", "");
+    let world = scene.compile().unwrap().world;
+    assert_eq!(world.geometry().texture_bytes, 341 * 3);
+    assert_eq!(scene.needs().pictures.len(), 1);
+    let before = scene.fingerprint();
+    assert!(before.parts().contains_key("file a.png"));
+    assert!(scene.paths().contains(&folder.path().join("a.png")));
+    // The file is another, but was read before; a scene that is loaded again sees it.
+    fs::copy(folder.path().join("a.webp"), folder.path().join("a.png")).unwrap();
+    assert_eq!(scene.at_frame(1.0).unwrap().fingerprint(), before);
+    let again = load(&folder, "a.png", "");
+    assert_ne!(again.fingerprint(), before);
+    assert!(!again.has_world_of(&scene) && again.has_world_of(&again.at_frame(1.0).unwrap()));
+    let path = folder.path().join("scene.json");
+    assert_eq!(scene.reload(path).unwrap().fingerprint(), again.fingerprint());
+}
+
+#[test]
+fn files_in_memory_serve_too() {
+    let folder = folder();
+    let png = fs::read(folder.path().join("a.png")).unwrap();
+    let text = scene("textures/a.png", r#", "color_space": "linear""#);
+    let bundle: Bundle = [("s.json".to_owned(), text.into_bytes()), ("a.png".to_owned(), png)].into_iter().collect();
+    assert!(Scene::from_bundle(bundle, "s.json").unwrap().compile().is_ok());
+}
+
+#[test]
+fn a_file_is_looked_for_beside_the_scene_file_that_names_it() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    fs::copy(folder.path().join("a.png"), folder.path().join("sub/b.png")).unwrap();
+    fs::write(folder.path().join("sub/part.json"), scene("b.png", "")).unwrap();
+    let path = folder.path().join("scene.json");
+    fs::write(&path, r#"{"version": 1, "include": "sub/part.json"}"#).unwrap();
+    assert!(Scene::load(path).unwrap().compile().is_ok());
+}
+
+#[test]
+fn wrong_files_say_what_is_wrong_and_where() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("text.png"), "no picture").unwrap();
+    fs::write(path("empty.png"), "").unwrap();
+    for format in Format::ALL {
+        let bytes = fs::read(path(&format!("a.{}", format.ending()))).unwrap();
+        let cut = format!("cut.{}", format.ending());
+        fs::write(path(&cut), &bytes[..bytes.len() / 2]).unwrap();
+        let text = complaint(&folder, &cut);
+        assert!(text.contains(&format!("`{cut}`: not a readable {format} file")), "{text}");
+        assert!(text.contains("at: textures.a.image.file"), "{text}");
+    }
+    // A head that promises 100,000 × 100,000 pixels.
+    let mut huge = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n".to_vec();
+    huge.extend([0; 64]);
+    fs::write(path("huge.hdr"), huge).unwrap();
+    fs::write(path("long.pfm"), b"Pf\n70000 1\n-1\n".iter().copied().chain(vec![0; 280_000]).collect::<Vec<u8>>())
+        .unwrap();
+    fs::write(path("none.pfm"), "Pf\n0 5\n-1\n").unwrap();
+    for (file, message) in [
+        ("nowhere.png", "cannot read `nowhere.png`: there is no such file"),
+        (".", "cannot read `.`: this is a folder, not a file"),
+        ("text.png", "`text.png`: not a picture in a known format (.png .jpg .exr .hdr .webp .pfm)"),
+        ("empty.png", "`empty.png`: not a picture in a known format"),
+        ("huge.hdr", "`huge.hdr`: 100000 × 100000 pixels are more than the limit of 268435456 pixels"),
+        ("long.pfm", "`long.pfm`: 70000 × 1 pixels, a side is 65536 pixels at most"),
+        ("none.pfm", "`none.pfm`: not a readable PFM file: its size is 0 × 5"),
+    ] {
+        let text = complaint(&folder, file);
+        assert!(text.contains(message), "{file}: {text}");
+    }
+}

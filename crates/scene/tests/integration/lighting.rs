@@ -1,0 +1,179 @@
+//! Files that light comes from: how often they are read, what they are part of, what wrong ones say.
+
+use juggler_imaging::{Format, Header, create};
+use juggler_math::{Image, Ray, Rgb, Vec3};
+use juggler_scene::compile::estimate_panorama;
+use juggler_scene::{Bundle, Scene};
+use juggler_tracer::light::AnyLight;
+use juggler_tracer::world::World;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const LAMP: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n0 90\n0\n100 50\n";
+
+/// A folder with a panorama whose left half is twice as bright as the other, and a lamp.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.exr", "a.hdr", "a.png"] {
+        save(&folder.path().join(name), 1.0);
+    }
+    fs::write(folder.path().join("lamp.ies"), LAMP).unwrap();
+    folder
+}
+
+fn save(path: &Path, right: f32) {
+    let image =
+        Image::from_pixels(8, 4, (0..32).map(|i| Rgb::splat(if i % 8 < 4 { 0.5 } else { 0.25 * right })).collect());
+    let mut writer = create(path, Format::from_path(path).unwrap(), &Header::new(8, 4)).unwrap();
+    writer.write_rows(image.unwrap().pixels()).unwrap();
+    writer.finish().unwrap();
+}
+
+fn scene(background: &str, lights: &str) -> String {
+    format!(
+        r#"{{"version": 1, "background": {background}, "lights": [{lights}],
+            "animation": {{"frames": 10}}, "render": {{"shutter": [0, 1]}}, "objects": [{{"shape": "sphere"}}]}}"#
+    )
+}
+
+fn panorama(file: &str, more: &str) -> String {
+    scene(&format!(r#"{{"environment": {{"file": "{file}"{more}}}}}"#), "")
+}
+
+fn lamp(file: &str, more: &str) -> String {
+    scene(r##""#000000""##, &format!(r#"{{"point": {{"position": [0, 5, 0], "ies": {{"file": "{file}"{more}}}}}}}"#))
+}
+
+fn load(folder: &TempDir, text: &str) -> Scene {
+    let path = folder.path().join("scene.json");
+    fs::write(&path, text).unwrap();
+    Scene::load(path).unwrap()
+}
+
+fn complaint(folder: &TempDir, text: &str) -> String {
+    let scene = load(folder, text);
+    let text = scene.compile().map(|_| ()).unwrap_err().to_string();
+    assert_eq!(scene.check().to_string(), text);
+    text.replace(&format!("{}/", folder.path().display()), "")
+}
+
+fn towards(world: &World, direction: Vec3) -> f32 {
+    world.background(&Ray::new(Vec3::ZERO, direction)).g
+}
+
+#[test]
+fn a_panorama_is_seen_and_read_once() {
+    let folder = folder();
+    for file in ["a.exr", "a.hdr", "a.png"] {
+        let scene = load(&folder, &panorama(file, r#", "scale": 4"#));
+        let world = scene.compile().unwrap().world;
+        let seen = [Vec3::X, Vec3::NEG_X].map(|direction| towards(&world, direction));
+        assert!((seen[0] - 2.0).abs() < 0.02 && (seen[1] - 1.0).abs() < 0.02, "{file}: {seen:?}");
+        assert_eq!(scene.needs().panoramas.len(), 1);
+        let (path, bytes) = (folder.path().join(file), world.geometry().background_bytes as u64);
+        let estimate = estimate_panorama(&path);
+        assert!(bytes > 0 && estimate.kept >= bytes && estimate.peak > estimate.kept, "{file}: {estimate:?}");
+        assert!(scene.fingerprint().parts().contains_key(&format!("file {file}")));
+        assert!(scene.paths().contains(&path));
+        // Another file by now, but it was read.
+        save(&path, 2.0);
+        let later = scene.at_frame(1.0).unwrap();
+        assert_eq!(later.fingerprint(), scene.fingerprint());
+        let edited = scene.with_value("/background/environment/rotation_degrees", 180.into()).unwrap();
+        let world = edited.compile().unwrap().world;
+        assert!((towards(&world, Vec3::NEG_X) - 2.0).abs() < 0.02);
+        let renewed = scene.reload(folder.path().join("scene.json")).unwrap();
+        assert_ne!(renewed.fingerprint(), scene.fingerprint());
+        assert!(!renewed.has_world_of(&scene) && later.has_world_of(&scene));
+        assert!((towards(&renewed.compile().unwrap().world, Vec3::NEG_X) - 2.0).abs() < 0.02);
+    }
+    assert_eq!(estimate_panorama(Path::new("none.exr")), Default::default());
+}
+
+#[test]
+fn files_in_memory_serve_too() {
+    let folder = folder();
+    let file = |name: &str| (name.to_owned(), fs::read(folder.path().join(name)).unwrap());
+    let text = panorama("panoramas/a.exr", "")
+        .replace(r#""lights": []"#, r#""lights": [{"spot": {"position": [0, 5, 0], "ies": {"file": "lamp.ies"}}}]"#);
+    let bundle: Bundle =
+        [("s.json".to_owned(), text.into_bytes()), file("a.exr"), file("lamp.ies")].into_iter().collect();
+    let scene = Scene::from_bundle(bundle, "s.json").unwrap();
+    assert!(scene.compile().is_ok());
+}
+
+#[test]
+fn skies_are_prepared() {
+    let folder = folder();
+    let scene = load(&folder, &scene(r#"{"sky": {"sun_elevation_degrees": "=20 + 10 * frame"}}"#, ""));
+    let up = |scene: &Scene| towards(&scene.compile().unwrap().world, Vec3::Y);
+    let first = up(&scene);
+    let others: Vec<f32> = (1..7).map(|frame| up(&scene.at_frame(f64::from(frame)).unwrap())).collect();
+    assert!(first > 0.0 && others.iter().all(|other| *other > first), "{first} {others:?}");
+    // What was prepared before is the same as what is prepared now.
+    assert_eq!((up(&scene), up(&scene.at_frame(6.0).unwrap())), (first, others[5]));
+}
+
+#[test]
+fn lamps_keep_their_files_when_they_move() {
+    let folder = folder();
+    let text = lamp("lamp.ies", "").replace("[0, 5, 0]", r#"["=4 * frame", 5, 0]"#);
+    let scene = load(&folder, &text);
+    let compiled = scene.compile().unwrap();
+    assert!(compiled.warnings.to_string().is_empty(), "{}", compiled.warnings);
+    let lamp = &compiled.world.lamps()[0];
+    assert!(lamp.moves());
+    for time in [0.0, 0.5, 1.0] {
+        let AnyLight::Point(point) = &lamp.at(time).light else { unreachable!() };
+        assert!((point.position.x - 4.0 * time).abs() < 0.02);
+        let under = point.position - Vec3::Y;
+        assert!(lamp.at(time).light.sample(under, Default::default()).is_some(), "{time}");
+    }
+    assert!(scene.fingerprint().parts().contains_key("file lamp.ies"));
+    assert!(scene.paths().contains(&folder.path().join("lamp.ies")));
+    let before = scene.fingerprint();
+    fs::write(folder.path().join("lamp.ies"), LAMP.replace("100 50", "100 60")).unwrap();
+    assert_eq!(scene.at_frame(0.0).unwrap().fingerprint(), before);
+    assert_ne!(load(&folder, &text).fingerprint(), before);
+}
+
+#[test]
+fn wrong_files_say_what_is_wrong_and_where() {
+    let folder = folder();
+    fs::write(folder.path().join("text.hdr"), "no picture").unwrap();
+    fs::write(folder.path().join("none.pfm"), "Pf\n0 5\n-1\n").unwrap();
+    let endless = [b"Pf\n1 1\n-1\n".as_slice(), &f32::INFINITY.to_le_bytes()].concat();
+    fs::write(folder.path().join("endless.pfm"), endless).unwrap();
+    for (file, message) in [
+        ("nowhere.exr", "cannot read `nowhere.exr`: there is no such file"),
+        (".", "cannot read `.`: this is a folder, not a file"),
+        ("text.hdr", "`text.hdr`: not a picture in a known format"),
+        ("none.pfm", "`none.pfm`: not a readable PFM file: its size is 0 × 5"),
+        ("endless.pfm", "`endless.pfm` has pixels without end"),
+    ] {
+        let text = complaint(&folder, &panorama(file, ""));
+        assert!(text.contains(message), "{file}: {text}");
+        assert!(text.contains("at: background.environment.file"), "{text}");
+    }
+    let text = complaint(&folder, &panorama("a.exr", r#", "up": [0, 0, 0]"#));
+    assert!(text.contains("at: background.environment.up") && text.matches("error").count() == 1, "{text}");
+    let bright = [b"Pf\n1 1\n-1\n".as_slice(), &1e3f32.to_le_bytes()].concat();
+    fs::write(folder.path().join("bright.pfm"), bright).unwrap();
+    let text = complaint(&folder, &panorama("bright.pfm", r#", "scale": 1e37"#));
+    assert!(text.contains("at: background.environment.scale"), "{text}");
+
+    fs::write(folder.path().join("short.ies"), &LAMP[..LAMP.len() - 4]).unwrap();
+    fs::write(folder.path().join("word.ies"), LAMP.replace("100 50", "100 five")).unwrap();
+    fs::write(folder.path().join("long.ies"), " ".repeat((16 << 20) + 1)).unwrap();
+    for (file, message) in [
+        ("nowhere.ies", "cannot read `nowhere.ies`: there is no such file"),
+        ("short.ies", "cannot read `short.ies`: line 7: "),
+        ("word.ies", "cannot read `word.ies`: line 7: "),
+        ("long.ies", "bytes"),
+    ] {
+        let text = complaint(&folder, &lamp(file, ""));
+        assert!(text.contains(message), "{file}: {text}");
+        assert!(text.contains("at: lights[0].point.ies.file") && !text.contains("no light"), "{text}");
+    }
+}

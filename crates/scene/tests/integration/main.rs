@@ -1,0 +1,22 @@
+//! Scene files: what they say, what they import, and what people read about wrong ones.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a test fails by panicking and prints its figures"
+)]
+
+mod animation;
+mod built_in;
+mod format;
+mod images;
+mod import_files;
+mod import_hostile;
+mod juggler;
+mod lighting;
+mod mutations;
+mod wrong_animations;
+mod wrong_scenes;

@@ -1,0 +1,144 @@
+//! Who is let in: one test for each rule.
+use crate::common::{Serving, serve, serve_with};
+use juggler_serve::{Options, ServeError, Server};
+use std::net::SocketAddr;
+
+/// A server that others could reach: at all addresses, reached here through the loopback.
+fn serve_remote() -> (Serving, String) {
+    let address = SocketAddr::from(([0, 0, 0, 0], 0));
+    let serving = serve_with(Options { address, allow_remote: true, ..Options::default() });
+    let token = serving.url.split_once("?token=").expect("an address with a token").1.to_owned();
+    (serving, token)
+}
+
+#[test]
+fn it_listens_to_this_machine_alone() {
+    assert!(Options::default().address.ip().is_loopback());
+    let session = crate::common::small_session();
+    let options = Options { address: SocketAddr::from(([0, 0, 0, 0], 0)), ..Options::default() };
+    assert!(matches!(Server::bind(session, options, |_| ()), Err(ServeError::Remote(_))));
+    let serving = serve();
+    assert!(!serving.url.contains("token") && serving.is_alive());
+}
+
+#[test]
+fn a_port_in_use_is_said() {
+    let serving = serve();
+    let options = Options { address: serving.address, ..Options::default() };
+    let error = Server::bind(crate::common::small_session(), options, |_| ()).err().unwrap();
+    assert!(matches!(error, ServeError::Busy(_)), "{error}");
+}
+
+#[test]
+fn only_own_names_lead_in() {
+    let serving = serve();
+    let port = serving.address.port();
+    for own in [format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")] {
+        assert_eq!(serving.ask("GET", "/", &[&format!("Host: {own}")]).status, 200, "{own}");
+    }
+    let foreign =
+        [format!("evil.example:{port}"), "localhost".into(), format!("localhost:{}", port ^ 1), String::new()];
+    for host in foreign {
+        assert_eq!(serving.ask("GET", "/", &[&format!("Host: {host}")]).status, 403, "{host:?}");
+    }
+    let own = format!("Host: {}", serving.host());
+    assert_eq!(serving.ask("GET", "/", &[]).status, 403, "no Host");
+    assert_eq!(serving.ask("GET", "/", &[&own, "Host: evil.example"]).status, 403, "two of them");
+    assert_eq!(serving.ask("GET", &format!("http://evil.example:{port}/"), &[&own]).status, 403, "in the address");
+    let page = serving.open("/socket", &[("Host", "evil.example"), ("Origin", "http://evil.example")]);
+    assert_eq!(page.err(), Some(403), "a rebound name");
+    serving.wait_for_line("evil.example");
+}
+
+#[test]
+fn pages_of_other_sites_get_no_socket() {
+    let serving = serve();
+    let own = format!("http://{}", serving.host());
+    assert!(serving.open("/socket", &[("Origin", &own)]).is_ok());
+    let port = serving.address.port();
+    let foreign = [
+        "http://evil.example".into(),
+        format!("http://localhost:{port}"),
+        format!("{own}.evil.example"),
+        "null".into(),
+    ];
+    for origin in foreign {
+        assert_eq!(serving.open("/socket", &[("Origin", &origin)]).err(), Some(403), "{origin}");
+    }
+    assert_eq!(serving.open("/socket", &[]).err(), Some(403), "no Origin");
+    serving.wait_for_line("Origin");
+    // Nor anything else.
+    let host = format!("Host: {}", serving.host());
+    assert_eq!(serving.ask("GET", "/save/picture.png", &[&host, "Origin: http://evil.example"]).status, 403);
+}
+
+#[test]
+fn nothing_changes_by_a_plain_request() {
+    let serving = serve();
+    let (host, own) = (format!("Host: {}", serving.host()), format!("Origin: http://{}", serving.host()));
+    for method in ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "NONSENSE"] {
+        for path in ["/", "/socket", "/save/picture.png", "/catalogue.json"] {
+            assert_eq!(serving.ask(method, path, &[&host, &own]).status, 405, "{method} {path}");
+            assert_eq!(serving.ask(method, path, &[&host]).status, 403, "{method} {path} without Origin");
+        }
+    }
+}
+
+#[test]
+fn a_remote_server_asks_every_request_for_its_token() {
+    let (serving, token) = serve_remote();
+    assert_eq!(token.len(), 32);
+    let own = format!("http://{}", serving.host());
+    let paths = ["/", "/page.js", "/catalogue.json", "/thumbnail/one-sphere.jpg", "/save/picture.png", "/socket", "/x"];
+    let other = "0".repeat(32);
+    for path in paths {
+        assert_eq!(serving.get(path).status, 403, "{path}");
+        for wrong in ["", &token[..31], &format!("{token}0"), &other] {
+            assert_eq!(serving.get(&format!("{path}?token={wrong}")).status, 403, "{path} {wrong}");
+            let cookie = format!("Cookie: juggler_{}={wrong}", serving.address.port());
+            assert_eq!(serving.ask("GET", path, &[&format!("Host: {}", serving.host()), &cookie]).status, 403);
+        }
+    }
+    assert_eq!(serving.open("/socket", &[("Origin", &own)]).err(), Some(403));
+    assert!(serving.open(&format!("/socket?token={token}"), &[("Origin", &own)]).is_ok());
+    serving.wait_for_line("no token");
+    assert!(serving.log.lock().unwrap().iter().all(|line| !line.contains(&token)), "the token is in the log");
+}
+
+#[test]
+fn the_page_gets_a_cookie_for_the_token() {
+    let (serving, token) = serve_remote();
+    let page = serving.get(&format!("/?token={token}"));
+    assert_eq!(page.status, 200);
+    let cookie = page.header("set-cookie").unwrap();
+    assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"), "{cookie}");
+    let cookie = cookie.split(';').next().unwrap();
+    let host = format!("Host: {}", serving.host());
+    assert_eq!(serving.ask("GET", "/page.js", &[&host, &format!("Cookie: a=b; {cookie}; c=d")]).status, 200);
+    let own = format!("http://{}", serving.host());
+    assert!(serving.open("/socket", &[("Origin", &own), ("Cookie", cookie)]).is_ok());
+    assert_eq!(serving.open("/socket", &[("Origin", "http://evil.example"), ("Cookie", cookie)]).err(), Some(403));
+}
+
+#[test]
+fn everything_is_sent_with_headers_that_keep_others_out() {
+    let serving = serve();
+    for path in ["/", "/page.js", "/catalogue.json", "/nothing"] {
+        let answer = serving.get(path);
+        let policy = answer.header("content-security-policy").unwrap();
+        assert!(policy.contains("default-src 'self'") && policy.contains("frame-ancestors 'none'"), "{policy}");
+        assert_eq!(answer.header("x-content-type-options"), Some("nosniff"), "{path}");
+        assert_eq!(answer.header("cache-control"), Some("no-store"), "{path}");
+        assert_eq!(answer.header("cross-origin-resource-policy"), Some("same-origin"), "{path}");
+    }
+    assert_eq!(serving.ask("GET", "/", &["Host: evil.example"]).header("x-frame-options"), Some("DENY"));
+}
+
+#[test]
+fn no_file_of_the_disk_is_given_out() {
+    let serving = serve();
+    for path in ["/../Cargo.toml", "/..%2fCargo.toml", "/thumbnail/..%2f..%2fx.jpg", "/save/..%2fx.png", "/etc/passwd"]
+    {
+        assert_eq!(serving.get(path).status, 404, "{path}");
+    }
+}

@@ -1,0 +1,16 @@
+//! The web server: who is let in, limits, hostile messages, the page.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a test fails by panicking and prints its figures"
+)]
+
+mod access;
+mod common;
+mod fuzz;
+mod limits;
+mod page;

@@ -1,0 +1,111 @@
+# The steps of check.sh.
+# shellcheck shell=bash
+
+programs=${CARGO_TARGET_DIR:-target}
+# Named as a target, this machine shares build scripts and macros with builds for which it is not named.
+host=$(rustc -vV | sed -n 's/^host: //p')
+
+# Announces what begins, and how many seconds have passed.
+heading() { printf '\n== %4d s  %s\n' "$SECONDS" "$*"; }
+
+run_steps() {
+  local name
+  for name in "$@"; do "step_$name"; done
+}
+
+# Notes a check that cannot run for want of a package. CI installs packages first (.ci/run), so that nothing is missing there.
+skip() {
+  if [ "${CI:-}" = true ]; then echo "error: $1, and CI skips nothing that a package gives" >&2; exit 1; fi
+  echo "SKIPPED: $1"
+  echo "$1" >> "$JUGGLER_SKIPPED"
+}
+
+# How the check ends: what was skipped, and why.
+report() {
+  heading "all checks passed"
+  if [ -s "$JUGGLER_SKIPPED" ]; then
+    printf '%d checks were skipped:\n' "$(wc -l < "$JUGGLER_SKIPPED")"
+    sort "$JUGGLER_SKIPPED" | uniq -c | sed 's/^ *\([0-9]*\) /  \1 x /'
+  else
+    echo "nothing was skipped"
+  fi
+}
+
+step_lint() {
+  heading "lint: spelling"
+  if command -v typos >/dev/null; then typos; else skip "spelling: typos is not installed (pip install typos)"; fi
+  heading "lint: format"
+  cargo fmt --all --check
+  heading "lint: clippy"
+  cargo clippy --workspace --all-targets --locked -- -D warnings
+  heading "lint: documentation"
+  RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+}
+
+# Tests of every package but those of the whole, unoptimized, with overflow checks.
+step_unit() {
+  heading "unit: tests of each package, and of its documentation"
+  cargo test --workspace --locked --exclude juggler-golden
+}
+
+# Packages by themselves, each feature alone and none: the workspace builds them only all together.
+step_features() {
+  local line
+  heading "features: packages by themselves"
+  while read -r line; do
+    echo "cargo clippy $line"
+    # shellcheck disable=SC2086
+    cargo clippy --locked --quiet $line -- -D warnings
+  done <<'END'
+-p juggler-cli --no-default-features
+-p juggler-cli --no-default-features --features av1
+-p juggler-cli --no-default-features --features serve
+-p juggler-cli --no-default-features --features view
+-p juggler --no-default-features
+-p juggler-imaging --no-default-features
+-p juggler-session --no-default-features
+-p juggler-web
+-p juggler-math
+END
+}
+
+# Hashes of pictures in every build that people make: they must be the same to the bit.
+step_golden() {
+  heading "golden: pictures and hashes, unoptimized, with overflow checks"
+  cargo test --workspace --locked --test golden
+  heading "golden: pictures and hashes, optimized"
+  cargo test --release --locked -p juggler-golden --test golden -- instances:: hashes:: matrix:: noise:: scales::
+  heading "golden: hashes, optimized for this very processor"
+  RUSTFLAGS="-C target-cpu=native" \
+    cargo test --release --locked --target "$host" -p juggler-golden --test golden -- hashes:: matrix::
+}
+
+step_windows() {
+  heading "windows: the program that is driven"
+  cargo build --workspace --locked
+  drive tests/viewer/test.sh "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
+  drive tests/browser/test.sh "chromium nodejs npm" chromium node npm
+  drive tests/films/test.sh "chromium nodejs npm ffmpeg" chromium node npm
+}
+
+# Runs a test that drives a program from outside, where its tools are there.
+drive() {
+  local test=$1 packages=$2 tool
+  shift 2
+  heading "windows: $test"
+  for tool in "$@"; do
+    if ! command -v "$tool" >/dev/null; then
+      skip "$test: $tool is not installed (apt-get install $packages)"
+      return
+    fi
+  done
+  "$test" "$programs/debug/juggler"
+}
+
+# The page that renders in the browser alone; not in CI, since its compiler and standard library are large downloads.
+step_web() {
+  heading "web: the page that renders in the browser alone"
+  cargo build --workspace --locked
+  web/build.sh
+  tests/web/test.sh "$programs/debug/juggler"
+}
