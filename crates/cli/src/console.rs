@@ -1,6 +1,7 @@
 //! Standard output for results, standard error for everything else.
 
 use crate::failure::Failure;
+use clap::ColorChoice;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
 /// Writes a result. A reader that has gone away is no failure: it has seen enough.
@@ -19,9 +20,18 @@ pub fn say(text: &str) {
     let _ = io::stderr().lock().write_all(line.as_bytes());
 }
 
-/// Whether standard error shows colours.
+/// Whether standard error shows colors.
 pub fn color() -> bool {
+    io::stderr().is_terminal() && !plain()
+}
+
+/// The same for what the command-line parser prints.
+pub fn color_choice() -> ColorChoice {
+    if plain() { ColorChoice::Never } else { ColorChoice::Auto }
+}
+
+/// Whether the environment asks for text without colors.
+fn plain() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-    io::stderr().is_terminal() && !set("NO_COLOR") && !dumb
+    set("NO_COLOR") || std::env::var_os("TERM").is_some_and(|term| term == "dumb")
 }

@@ -14,11 +14,13 @@ mod source;
 mod stats;
 mod value;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let args = match args::Args::try_parse() {
+    let mut parser = args::Args::command().color(console::color_choice());
+    let parsed = parser.try_get_matches_from_mut(std::env::args_os());
+    let args = match parsed.and_then(|matches| args::Args::from_arg_matches(&matches)) {
         Ok(args) => args,
         Err(error) => {
             // Help and version go to standard output, mistakes to standard error; a closed pipe is no mistake.
