@@ -34,7 +34,9 @@ impl Interrupts {
         let signal = u8::try_from(number).unwrap_or(u8::MAX);
         (number != 0).then_some(Failure::Interrupted { signal, kept: None })
     }
+
     /// Sleeps until a signal comes; it, as a failure.
+    #[cfg(feature = "serve")]
     pub fn wait(&self) -> Failure {
         // One that came before these listen is remembered.
         let mut signals = match Signals::new(WATCHED) {

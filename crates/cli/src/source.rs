@@ -31,6 +31,7 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
 }
 
 /// Whether there is a scene file or a built-in scene of this name, whatever is in it.
+#[cfg(feature = "view")]
 pub fn find(name: &str) -> Result<(), Failure> {
     let path = Path::new(name);
     if path.exists() && !path.is_dir() {
