@@ -48,7 +48,8 @@ step_unit() {
   cargo test --workspace --locked --exclude juggler-golden
 }
 
-# Packages by themselves, each feature alone and none: the workspace builds them only all together.
+# Each feature alone and none: the workspace builds them only all together. The program without features holds the libraries
+# without theirs, `juggler-web` the session without threads and clocks.
 step_features() {
   local line
   heading "features: packages by themselves"
@@ -61,11 +62,7 @@ step_features() {
 -p juggler-cli --no-default-features --features av1
 -p juggler-cli --no-default-features --features serve
 -p juggler-cli --no-default-features --features view
--p juggler --no-default-features
--p juggler-imaging --no-default-features
--p juggler-session --no-default-features
 -p juggler-web
--p juggler-math
 END
 }
 
