@@ -77,9 +77,12 @@ step_golden() {
     cargo test --release --locked --target "$host" -p juggler-golden --test golden -- hashes:: matrix::
 }
 
+# Builds the program as the tests do: without them, other features of its dependencies would build all of them again.
+build_debug_program() { cargo test --workspace --locked --no-run --quiet; }
+
 step_windows() {
   heading "windows: the program that is driven"
-  cargo build --workspace --locked
+  build_debug_program
   drive tests/viewer/test.sh "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
   drive tests/browser/test.sh "chromium nodejs npm" chromium node npm
   drive tests/films/test.sh "chromium nodejs npm ffmpeg" chromium node npm
@@ -102,7 +105,7 @@ drive() {
 # The page that renders in the browser alone; not in CI, since its compiler and standard library are large downloads.
 step_web() {
   heading "web: the page that renders in the browser alone"
-  cargo build --workspace --locked
+  build_debug_program
   web/build.sh
   tests/web/test.sh "$programs/debug/juggler"
 }
