@@ -216,11 +216,14 @@ async function reconnect(tab) {
   const { port } = server;
   assert.equal(await server.stop("SIGINT"), 130);
   await until("the loss is said", () => tab.visible("#connection"));
+  const last = tab.status;
   await pause(1200);
   await tab.screenshot("9-lost");
   assert(/trying again/.test(await tab.page.locator("#connection").innerText()));
   server = await startServer(program, words(port));
   await until("it is there again", async () => !(await tab.visible("#connection")));
+  // The new server numbers its pictures anew: what is compared with must be one of them.
+  await until("a picture of the new server", async () => tab.status !== last && (await tab.shown()).revision === tab.status.revision);
   await change(tab, () => tab.page.keyboard.press("d"));
 }
 
