@@ -4,7 +4,7 @@
 use crate::harness::{self, Folder, Run, wait_until};
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::process::Stdio;
+use std::process::{Child, ChildStderr, Stdio};
 
 const LINE: &str = "render ball.json --size 64x36 --samples 1";
 
@@ -72,8 +72,8 @@ fn an_interrupted_film_says_where_its_frames_are_and_leaves_no_half_of_itself() 
     assert_eq!(folder.files(), ["film.gif.frames"]);
 }
 
-/// Starts a film, interrupts it in its first frame, and says what it said.
-fn interrupted(folder: &Folder, line: &str) -> String {
+/// Starts a film, and returns when it reports progress, with what it wrote until then and where the rest is read.
+fn under_way(folder: &Folder, line: &str) -> (Child, String, BufReader<ChildStderr>) {
     let mut command = folder.command(&format!("{line} --progress json"));
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stderr.take().unwrap());
@@ -81,6 +81,12 @@ fn interrupted(folder: &Folder, line: &str) -> String {
     while !log.contains("\"progress\"") {
         assert!(lines.read_line(&mut log).unwrap() > 0, "it ended: {log}");
     }
+    (child, log, lines)
+}
+
+/// Starts a film, interrupts it in its first frame, and returns what it wrote.
+fn interrupted(folder: &Folder, line: &str) -> String {
+    let (mut child, mut log, mut lines) = under_way(folder, line);
     harness::signal(&child, "-INT");
     lines.read_to_string(&mut log).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{log}");
@@ -150,14 +156,8 @@ fn shards_of_a_film_fill_its_folder_together() {
 fn a_film_is_made_by_one_process_at_a_time() {
     let folder = Folder::new();
     let line = "render ball.json --size 160x120 --samples 100000 -o film.apng";
-    let mut command = folder.command(&format!("{line} --progress json"));
-    let mut first = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     // A process that reports progress holds the lock.
-    let mut log = String::new();
-    let mut lines = BufReader::new(first.stderr.take().unwrap());
-    while !log.contains("\"progress\"") {
-        assert!(lines.read_line(&mut log).unwrap() > 0, "it ended: {log}");
-    }
+    let (mut first, _, _lines) = under_way(&folder, line);
     for flags in ["", " --shard 1/2"] {
         let message = folder.bad(&format!("{line}{flags}"), 3);
         assert!(message.contains("other processes are at work in `film.apng.frames`"), "{message}");
