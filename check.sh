@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Everything that must hold before a change lands. CI runs exactly this; cheap steps, and those likely to fail, come first.
-#   ./check.sh                  lint, unit, features, golden and windows
+#   ./check.sh                  lint, unit, features, windows and golden
 #   ./check.sh STEP...          single steps: lint unit features golden windows web
 #   ./check.sh changed [BASE]   lint, and the tests of every package that the changes since BASE can break; BASE is the merge
 #                               base with main by default, on main itself the last commit
@@ -21,13 +21,21 @@ usage() {
   exit 2
 }
 
-# What could not run on this machine: one line each, written here and by the tests themselves.
-JUGGLER_SKIPPED=$(mktemp)
-export JUGGLER_SKIPPED
-trap 'rm -f "$JUGGLER_SKIPPED"' EXIT
+# What commands in the background print, and what could not run on this machine: one line each, written here and by the
+# tests themselves.
+logs=$(mktemp -d)
+export JUGGLER_SKIPPED=$logs/skipped
+touch "$JUGGLER_SKIPPED"
+finish() {
+  local process
+  for process in "${background[@]}"; do kill -- "-$process" 2>/dev/null || true; done
+  rm -rf "$logs"
+}
+trap finish EXIT
+trap 'exit 130' INT TERM
 
 case "${1:-all}" in
-  all) run_steps lint unit features golden windows ;;
+  all) check_all ;;
   changed) shift; check_changed "$@" ;;
   deep) shift; check_deep "$@" ;;
   *)

@@ -8,6 +8,18 @@ host=$(rustc -vV | sed -n 's/^host: //p')
 # Announces what begins, and how many seconds have passed.
 heading() { printf '\n== %4d s  %s\n' "$SECONDS" "$*"; }
 
+# Everything. What is only built is built while windows are driven, which leaves the machine idle.
+check_all() {
+  run_steps lint unit
+  in_background "golden: optimized programs" at_leisure build_golden
+  start_windows
+  in_background "features" at_leisure step_features
+  finish_windows
+  finish_background "features"
+  finish_background "golden: optimized programs"
+  run_steps golden
+}
+
 run_steps() {
   local name
   for name in "$@"; do "step_$name"; done
@@ -29,6 +41,34 @@ report() {
   else
     echo "nothing was skipped"
   fi
+}
+
+# Starts a command beside what follows, as a process group; what it prints is kept until it is waited for.
+in_background() {
+  local name=$1
+  shift
+  set -m
+  "$@" > "$logs/$name" 2>&1 < /dev/null &
+  background[$name]=$!
+  set +m
+}
+declare -A background=()
+
+# Runs a command whenever nothing else runs.
+at_leisure() {
+  renice -n 19 "$BASHPID" >/dev/null
+  "$@"
+}
+
+# Waits for a command in the background, and prints what it printed.
+finish_background() {
+  local name=$1 status=0
+  [ -n "${background[$name]:-}" ] || return 0
+  wait "${background[$name]}" || status=$?
+  unset "background[$name]"
+  heading "$name"
+  cat "$logs/$name"
+  [ "$status" = 0 ] || { echo "error: $name: status $status" >&2; exit 1; }
 }
 
 step_lint() {
@@ -72,35 +112,58 @@ step_golden() {
   heading "golden: pictures and hashes, unoptimized, with overflow checks"
   cargo test --workspace --locked --test golden -- --skip noise:: --skip blur::
   heading "golden: pictures and hashes, optimized"
-  cargo test --release --locked -p juggler-golden --test golden -- --skip tree:: --skip arithmetic::
+  cargo test "${golden_optimized[@]}" -- --skip tree:: --skip arithmetic::
   heading "golden: hashes, optimized for this very processor"
-  RUSTFLAGS="-C target-cpu=native" \
-    cargo test --release --locked --target "$host" -p juggler-golden --test golden -- hashes:: matrix::
+  RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" -- hashes:: matrix::
+}
+
+golden_optimized=(--release --locked -p juggler-golden --test golden)
+# Texts of scenes are not worth their time here.
+golden_native=("${golden_optimized[@]}" --target "$host"
+  --config "profile.release.package.juggler-scene.opt-level=1")
+
+# Builds the optimized programs of `golden`, to run later.
+build_golden() {
+  cargo test "${golden_optimized[@]}" --no-run
+  RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" --no-run
 }
 
 # Builds the program as the tests do: without them, other features of its dependencies would build all of them again.
 build_debug_program() { cargo test --workspace --locked --no-run --quiet; }
 
 step_windows() {
-  heading "windows: the program that is driven"
-  build_debug_program
-  drive tests/viewer/test.sh "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
-  drive tests/browser/test.sh "chromium nodejs npm" chromium node npm
-  drive tests/films/test.sh "chromium nodejs npm ffmpeg" chromium node npm
+  start_windows
+  finish_windows
 }
 
-# Runs a test that drives a program from outside, where its tools are there.
+# The window is driven beside the page: most of the time each waits for pictures.
+start_windows() {
+  heading "windows: the program that is driven"
+  build_debug_program
+  heading "windows: the window, the page and films are driven"
+  drive "windows: the window" drive_window "xvfb xdotool imagemagick libgl1 libgl1-mesa-dri libxkbcommon-x11-0" Xvfb xdotool import
+  drive "windows: the page and films" drive_page "chromium nodejs npm ffmpeg" chromium node npm
+}
+
+finish_windows() {
+  finish_background "windows: the page and films"
+  finish_background "windows: the window"
+}
+
+drive_window() { tests/viewer/test.sh "$programs/debug/juggler"; }
+drive_page() { tests/browser/test.sh "$programs/debug/juggler" && tests/films/test.sh "$programs/debug/juggler"; }
+
+# Starts a test that drives a program from outside, where its tools are there.
 drive() {
-  local test=$1 packages=$2 tool
-  shift 2
-  heading "windows: $test"
+  local name=$1 test=$2 packages=$3 tool
+  shift 3
   for tool in "$@"; do
     if ! command -v "$tool" >/dev/null; then
-      skip "$test: $tool is not installed (apt-get install $packages)"
+      skip "$name: $tool is not installed (apt-get install $packages)"
       return
     fi
   done
-  "$test" "$programs/debug/juggler"
+  in_background "$name" "$test"
 }
 
 # The page that renders in the browser alone; not in CI, since its compiler and standard library are large downloads.

@@ -1,4 +1,5 @@
 //! Every kind of edit: what it does, and what it says when it cannot be.
+use crate::{PATIENCE, until};
 use juggler::scene::{Scene, built_in_scenes};
 use juggler::tracer::film::Rect;
 use juggler_session::{Channel, Edit, Fly, Options, Orbit, Session, Setting, Stage, Status};
@@ -10,22 +11,9 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 const SIZE: [u32; 2] = [48, 36];
-const PATIENCE: Duration = Duration::from_secs(30);
 
 fn options() -> Options {
     Options { size: Some(SIZE), threads: 2, ..Options::default() }
-}
-
-fn until(session: &Session, what: impl Fn(&Status) -> bool) -> Arc<Status> {
-    let end = Instant::now() + PATIENCE;
-    while Instant::now() < end {
-        let status = session.status();
-        if what(&status) {
-            return status;
-        }
-        session.wait(u64::MAX, status.number, Duration::from_millis(100));
-    }
-    panic!("never came: {:?}", session.status());
 }
 
 fn settled(session: &Session, revision: u64) -> Arc<Status> {

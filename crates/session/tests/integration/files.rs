@@ -1,4 +1,5 @@
 //! Files that change while they are looked at.
+use crate::until;
 use juggler::scene::Scene;
 use juggler_session::{Edit, Fly, Options, Session, Stage, Status};
 use std::fs;
@@ -8,23 +9,10 @@ use std::time::{Duration, Instant};
 
 /// What a change may take to be shown.
 const AT_ONCE: Duration = Duration::from_millis(200);
-const PATIENCE: Duration = Duration::from_secs(30);
 
 fn watched(file: &Path) -> Session {
     let options = Options { size: Some([32, 24]), threads: 2, watch: true, ..Options::default() };
     Session::open(&file.to_string_lossy(), options)
-}
-
-fn until(session: &Session, what: impl Fn(&Status) -> bool) -> Arc<Status> {
-    let end = Instant::now() + PATIENCE;
-    while Instant::now() < end {
-        let status = session.status();
-        if what(&status) {
-            return status;
-        }
-        session.wait(u64::MAX, status.number, Duration::from_millis(50));
-    }
-    panic!("never came: {:?}", session.status());
 }
 
 fn scene(include: &str, samples: u32) -> String {
