@@ -33,28 +33,40 @@ readers() {
   esac
 }
 
-# The packages to test, one a line, by their folders; `all` where everything may be concerned.
+# Whether a Rust file differs from a commit in comments alone: in lines that are empty or begin with `//`. Lines of texts that
+# begin so are taken for comments too; the whole check finds what they break.
+is_commented() {
+  [[ $2 == *.rs && -f $2 ]] && git cat-file -e "$1:$2" 2>/dev/null || return 1
+  git diff -U0 "$1" -- "$2" |
+    awk '/^[-+]/ && !/^(---|\+\+\+) / && !/^[-+][[:space:]]*(\/\/.*)?$/ { code = 1 } END { exit code }'
+}
+
+# The packages to test, one a line, by their folders; `all` where everything may be concerned. What is built on a package sees
+# its code, not its comments: those reach its own tests and, as descriptions, the scene format.
 affected_packages() {
-  local file direct
-  direct=$(while read -r file; do
-    case "$file" in
-      crates/*/*) cut -d/ -f2 <<< "$file" ;;
-      *) readers "$file" ;;
-    esac
-  done | sort -u)
+  local base=$1 file package direct=
+  while read -r file; do
+    if [[ $file != crates/*/* ]]; then
+      direct+="$(readers "$file")"$'\n'
+    elif is_commented "$base" "$file"; then
+      printf '%s\nscene\n' "$(cut -d/ -f2 <<< "$file")"
+    else
+      direct+="$(cut -d/ -f2 <<< "$file")"$'\n'
+    fi
+  done
   if grep -qx all <<< "$direct"; then echo all; return; fi
-  while read -r package; do [ -z "$package" ] || dependents "$package"; done <<< "$direct" | sort -u
+  sort -u <<< "$direct" | while read -r package; do [ -z "$package" ] || dependents "$package"; done
 }
 
 check_changed() {
   local base files packages
   base=$(git rev-parse --verify "${1:-$(changed_base)}")
   files=$(changed_files "$base" | sort -u)
-  packages=$(affected_packages <<< "$files")
+  packages=$(affected_packages "$base" <<< "$files" | sort -u)
   heading "changed since $(git log -1 --format='%h %s' "$base")"
   echo "packages to test: ${packages//$'\n'/, }"
   step_lint
-  if [ "$packages" = all ]; then
+  if grep -qx all <<< "$packages"; then
     step_unit
     run_test_programs golden
   elif [ -n "$packages" ]; then
@@ -64,18 +76,29 @@ check_changed() {
   if grep -qE '^(crates/(session|viewer|serve)|tests/(viewer|browser|films))/' <<< "$files"; then step_windows; fi
 }
 
-# Builds all tests together, as the whole check does, so that nothing is built twice in two shapes; runs those of packages.
+# Builds all tests together, as the whole check does, so that nothing is built twice in two shapes; runs those of packages,
+# and the rules of the tree.
 run_test_programs() {
-  local package program built
+  local package program built left_out
   heading "changed: build"
   built=$(mktemp)
   cargo test --workspace --locked --no-run --message-format=json-render-diagnostics > "$built"
   for package in "$@"; do
-    sed -n "/\"package_id\":\"[^\"]*\/crates\/$package#/{/\"profile\":{[^}]*\"test\":true}/s/.*\"executable\":\"\([^\"]*\)\".*/\1/p}" "$built" |
-      while read -r program; do
-        heading "changed: $package, ${program##*/}"
-        (cd "crates/$package" && "$program" --quiet </dev/null)
-      done
+    left_out=()
+    if [ "$package" = golden ]; then left_out=("${golden_left_out[@]}"); fi
+    test_programs "$package" "$built" | while read -r program; do
+      heading "changed: $package, ${program##*/}"
+      (cd "crates/$package" && "$program" --quiet "${left_out[@]}" < /dev/null)
+    done
   done
+  if [[ " $* " != *" golden "* ]]; then
+    heading "changed: the rules of the tree"
+    (cd crates/golden && "$(test_programs golden "$built" | grep '/golden-')" --quiet tree:: < /dev/null)
+  fi
   rm -f "$built"
+}
+
+# The test programs of a package, one a line, in what cargo printed.
+test_programs() {
+  sed -n "/\"package_id\":\"[^\"]*\/crates\/$1#/{/\"profile\":{[^}]*\"test\":true}/s/.*\"executable\":\"\([^\"]*\)\".*/\1/p}" "$2"
 }

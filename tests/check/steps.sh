@@ -110,13 +110,15 @@ END
 # optimized, the rules of the tree are read once.
 step_golden() {
   heading "golden: pictures and hashes, unoptimized, with overflow checks"
-  cargo test --workspace --locked --test golden -- --skip noise:: --skip blur::
+  cargo test --workspace --locked --test golden -- "${golden_left_out[@]}"
   heading "golden: pictures and hashes, optimized"
   cargo test "${golden_optimized[@]}" -- --skip tree:: --skip arithmetic::
   heading "golden: hashes, optimized for this very processor"
   RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" -- hashes:: matrix::
 }
 
+# Statistics of whole pictures, which take too long unoptimized.
+golden_left_out=(--skip noise:: --skip blur::)
 golden_optimized=(--release --locked -p juggler-golden --test golden)
 # Texts of scenes are not worth their time here.
 golden_native=("${golden_optimized[@]}" --target "$host"

@@ -4,7 +4,6 @@ use juggler::scene::Scene;
 use juggler_session::{Edit, Fly, Options, Session, Stage, Status};
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What a change may take to be shown.
