@@ -8,9 +8,9 @@ use std::process::{Command, Stdio};
 
 const MIB: u64 = 1 << 20;
 
-/// A budget in bytes: what an optimized program needs, in MiB, and the 8 MiB more that unoptimized code takes.
+/// A budget in bytes: what an optimized program needs, in MiB, and the 12 MiB more that unoptimized code takes.
 fn budget(mib: u64) -> u64 {
-    (mib + if cfg!(debug_assertions) { 8 } else { 0 }) * MIB
+    (mib + if cfg!(debug_assertions) { 12 } else { 0 }) * MIB
 }
 
 /// Address space that is reserved and never used, so that `ulimit -v` is to be larger than `--max-memory` by it: the
