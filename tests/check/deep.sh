@@ -31,8 +31,15 @@ once() {
   echo "$source" > "$passed"
 }
 
-# All hashes by the very profile that is shipped.
-deep_dist() { cargo test --profile dist --locked -p juggler-golden --test golden -- hashes:: matrix::; }
+# All hashes by the very profile that is shipped, and the size of the program.
+deep_dist() {
+  local size
+  cargo test --profile dist --locked -p juggler-golden --test golden -- hashes:: matrix::
+  cargo build --profile dist --locked -p juggler-cli
+  size=$(stat -c %s "$programs/dist/juggler")
+  echo "the program has $size bytes"
+  [ "$size" -lt 20000000 ] || { echo "error: the program has 20 MB or more" >&2; return 1; }
+}
 
 # All scenes and larger pictures on all threads, vector units, orders and shards.
 deep_matrix() { JUGGLER_MATRIX=wide cargo test --release --locked -p juggler-golden --test golden -- matrix::; }
