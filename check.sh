@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Everything that must hold before a change lands. CI runs exactly this; cheap steps, and those likely to fail, come first.
+# Everything that must hold before a change lands. CI runs exactly this; cheap steps, and those
+# likely to fail, come first.
 #   ./check.sh                  lint, unit, features, windows and golden
 #   ./check.sh STEP...          single steps: lint unit features golden windows web
-#   ./check.sh changed [BASE]   lint, and the tests of every package that the changes since BASE can break; BASE is the merge
-#                               base with main by default, on main itself the last commit
-#   ./check.sh deep [PART...]   the long checks: dist matrix noise rays memory kills web cluster; parts that passed on the very same
-#                               source are not run again
+#   ./check.sh changed [BASE]   lint, and the tests of every package that the changes since BASE can
+#                               break; BASE is the merge base with main by default, on main itself
+#                               the last commit
+#   ./check.sh deep [PART...]   the long checks: dist matrix noise rays memory kills web cluster;
+#                               parts that passed on the very same source are not run again
 # CONTRIBUTING.md says what each step does and how long it takes.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -21,8 +23,8 @@ usage() {
   exit 2
 }
 
-# What commands in the background print, and what could not run on this machine: one line each, written here and by the
-# tests themselves.
+# What commands in the background print, and what could not run on this machine: one line each,
+# written here and by the tests themselves.
 logs=$(mktemp -d)
 export JUGGLER_SKIPPED=$logs/skipped
 touch "$JUGGLER_SKIPPED"

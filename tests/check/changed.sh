@@ -1,7 +1,8 @@
 # `check.sh changed`: what a change can break, by the graph of packages.
 # shellcheck shell=bash
 
-# The commit that a change is compared with: where the branch left main, on main itself the commit before.
+# The commit that a change is compared with: where the branch left main, on main itself the commit
+# before.
 changed_base() {
   local base
   base=$(git merge-base HEAD main 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null || true)
@@ -15,7 +16,8 @@ changed_files() {
   git ls-files --others --exclude-standard
 }
 
-# A package and all packages that build on it, tests included; packages are named by their folders in crates/.
+# A package and all packages that build on it, tests included; packages are named by their folders
+# in crates/.
 dependents() {
   local name
   name=$(sed -n 's/^name = "\(.*\)"/\1/p' "crates/$1/Cargo.toml" | head -1)
@@ -33,16 +35,18 @@ readers() {
   esac
 }
 
-# Whether a Rust file differs from a commit in comments alone: in lines that are empty or begin with `//`. Lines of texts that
-# begin so are taken for comments too; the whole check finds what they break.
+# Whether a Rust file differs from a commit in comments alone: in lines that are empty or begin with
+# `//`. Lines of texts that begin so are taken for comments too; the whole check finds what they
+# break.
 is_commented() {
   [[ $2 == *.rs && -f $2 ]] && git cat-file -e "$1:$2" 2>/dev/null || return 1
   git diff -U0 "$1" -- "$2" |
     awk '/^[-+]/ && !/^(---|\+\+\+) / && !/^[-+][[:space:]]*(\/\/.*)?$/ { code = 1 } END { exit code }'
 }
 
-# The packages to test, one a line, by their folders; `all` where everything may be concerned. What is built on a package sees
-# its code, not its comments: those reach its own tests and, as descriptions, the scene format.
+# The packages to test, one a line, by their folders; `all` where everything may be concerned. What
+# is built on a package sees its code, not its comments: those reach its own tests and, as
+# descriptions, the scene format.
 affected_packages() {
   local base=$1 file package direct=
   while read -r file; do
@@ -76,8 +80,8 @@ check_changed() {
   if grep -qE '^(crates/(session|viewer|serve)|tests/(viewer|browser|films))/' <<< "$files"; then step_windows; fi
 }
 
-# Builds all tests together, as the whole check does, so that nothing is built twice in two shapes; runs those of packages,
-# and the rules of the tree.
+# Builds all tests together, as the whole check does, so that nothing is built twice in two shapes;
+# runs those of packages, and the rules of the tree.
 run_test_programs() {
   local package program built left_out
   heading "changed: build"
@@ -96,6 +100,8 @@ run_test_programs() {
     (cd crates/golden && "$(test_programs golden "$built" | grep '/golden-')" --quiet tree:: < /dev/null)
   fi
   rm -f "$built"
+  heading "changed: examples of the documentation"
+  cargo test --workspace --locked --doc --quiet
 }
 
 # The test programs of a package, one a line, in what cargo printed.

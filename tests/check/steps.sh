@@ -2,7 +2,8 @@
 # shellcheck shell=bash
 
 programs=${CARGO_TARGET_DIR:-target}
-# Named as a target, this machine shares build scripts and macros with builds for which it is not named.
+# Named as a target, this machine shares build scripts and macros with builds for which it is not
+# named.
 host=$(rustc -vV | sed -n 's/^host: //p')
 
 # Announces what begins, and how many seconds have passed.
@@ -25,7 +26,8 @@ run_steps() {
   for name in "$@"; do "step_$name"; done
 }
 
-# Notes a check that cannot run for want of a package. CI installs packages first (.ci/run), so that nothing is missing there.
+# Notes a check that cannot run for want of a package. CI installs packages first (.ci/run), so that
+# nothing is missing there.
 skip() {
   if [ "${CI:-}" = true ]; then echo "error: $1, and CI skips nothing that a package gives" >&2; exit 1; fi
   echo "SKIPPED: $1"
@@ -43,7 +45,8 @@ report() {
   fi
 }
 
-# Starts a command beside what follows, as a process group; what it prints is kept until it is waited for.
+# Starts a command beside what follows, as a process group; what it prints is kept until it is
+# waited for.
 in_background() {
   local name=$1
   shift
@@ -88,8 +91,8 @@ step_unit() {
   cargo test --workspace --locked --exclude juggler-golden
 }
 
-# Each feature alone and none: the workspace builds them only all together. The program without features holds the libraries
-# without theirs, `juggler-web` the session without threads and clocks.
+# Each feature alone and none: the workspace builds them only all together. The program without
+# features holds the libraries without theirs, `juggler-web` the session without threads and clocks.
 step_features() {
   local line
   heading "features: packages by themselves"
@@ -106,8 +109,8 @@ step_features() {
 END
 }
 
-# Hashes of pictures in every build that people make: they must be the same to the bit. Statistics of whole pictures are
-# optimized, the rules of the tree are read once.
+# Hashes of pictures in every build that people make: they must be the same to the bit. Statistics
+# of whole pictures are optimized, the rules of the tree are read once.
 step_golden() {
   heading "golden: pictures and hashes, unoptimized, with overflow checks"
   cargo test --workspace --locked --test golden -- "${golden_left_out[@]}"
@@ -130,7 +133,8 @@ build_golden() {
   RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" --no-run
 }
 
-# Builds the program as the tests do: without them, other features of its dependencies would build all of them again.
+# Builds the program as the tests do: without them, other features of its dependencies would build
+# all of them again.
 build_debug_program() { cargo test --workspace --locked --no-run --quiet; }
 
 step_windows() {
@@ -168,7 +172,8 @@ drive() {
   in_background "$name" "$test"
 }
 
-# The page that renders in the browser alone; not in CI, since its compiler and standard library are large downloads.
+# The page that renders in the browser alone; not in CI, since its compiler and standard library are
+# large downloads.
 step_web() {
   heading "web: the page that renders in the browser alone"
   build_debug_program
