@@ -1,12 +1,12 @@
 # `check.sh changed`: what a change can break, by the graph of packages.
 # shellcheck shell=bash
 
-# The commit that a change is compared with: where the branch left main, on main itself the commit
-# before.
+# The commit that a change is compared with: where the branch left main, on main itself the last
+# commit, and the one before where nothing has changed since.
 changed_base() {
   local base
-  base=$(git merge-base HEAD main 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null || true)
-  if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD)" ]; then base=$(git rev-parse HEAD~1 2>/dev/null || git rev-parse HEAD); fi
+  base=$(git merge-base HEAD main 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null || git rev-parse HEAD)
+  if [ -z "$(changed_files "$base")" ]; then base=$(git rev-parse --verify --quiet HEAD~1 || echo "$base"); fi
   echo "$base"
 }
 

@@ -110,7 +110,7 @@ fn cargo_run_runs_the_program() {
     assert_eq!(told, [PROGRAM.map(str::to_owned)], "one default-run, for `cargo run` takes no other");
 }
 
-/// A package that the release profile does not list is not optimized.
+/// A package that the release profile does not list is hardly optimized.
 #[test]
 fn the_release_profile_lists_every_package() {
     let workspace = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
