@@ -72,7 +72,8 @@ fn an_interrupted_film_says_where_its_frames_are_and_leaves_no_half_of_itself() 
     assert_eq!(folder.files(), ["film.gif.frames"]);
 }
 
-/// Starts a film, and returns when it reports progress, with what it wrote until then and where the rest is read.
+/// Starts a movie and returns at its first report of progress, with the log until then and the
+/// reader of the rest.
 fn under_way(folder: &Folder, line: &str) -> (Child, String, BufReader<ChildStderr>) {
     let mut command = folder.command(&format!("{line} --progress json"));
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
@@ -84,7 +85,7 @@ fn under_way(folder: &Folder, line: &str) -> (Child, String, BufReader<ChildStde
     (child, log, lines)
 }
 
-/// Starts a film, interrupts it in its first frame, and returns what it wrote.
+/// Starts a movie, interrupts it in its first frame, and returns its log.
 fn interrupted(folder: &Folder, line: &str) -> String {
     let (mut child, mut log, mut lines) = under_way(folder, line);
     harness::signal(&child, "-INT");

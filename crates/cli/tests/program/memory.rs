@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 
 const MIB: u64 = 1 << 20;
 
-/// A budget in bytes: what an optimized program needs, in MiB, and the 12 MiB more that unoptimized code takes.
+/// Memory budget in bytes, from the need of an optimized program in MiB: unoptimized code takes
+/// 12 MiB more.
 fn budget(mib: u64) -> u64 {
     (mib + if cfg!(debug_assertions) { 12 } else { 0 }) * MIB
 }

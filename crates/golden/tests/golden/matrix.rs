@@ -94,9 +94,10 @@ fn methods() -> impl Iterator<Item = Method> {
     ORDERS.into_iter().map(Method::Streamed).chain(SHARDS.into_iter().map(Method::Shards))
 }
 
-/// Whether a combination of the n-th vector unit, number of threads and method is rendered. Optimized builds render all of
-/// them; unoptimized ones, far slower, render each pair of a vector unit and a method once, the number of threads going
-/// round, so that each vector unit also meets every number of threads.
+/// Whether a combination of the n-th vector unit, number of threads and method is rendered.
+/// Optimized builds render all combinations. Unoptimized builds are far slower: they render each
+/// pair of a vector unit and a method once and rotate the number of threads, so that each vector
+/// unit also meets every number of threads.
 fn is_rendered(level: usize, threads: usize, method: usize) -> bool {
     !cfg!(debug_assertions) || threads == (level + method) % THREADS.len()
 }
