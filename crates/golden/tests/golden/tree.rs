@@ -7,6 +7,9 @@ use std::process::Command;
 /// Lines a source file may have, tests included.
 const MAX_LINES: usize = 400;
 
+/// Bytes that a committed file may have.
+const MAX_BYTES: u64 = 1_500_000;
+
 /// The only files with `unsafe` in them, below `crates`.
 const UNSAFE: &[&str] = &["bvh/benches/embree/ffi.rs", "bvh/src/lanes.rs", "bvh/src/pages.rs", "oidn/src/ffi.rs"];
 
@@ -51,6 +54,19 @@ fn no_source_file_is_long() {
         .map(|(path, lines)| format!("{}: {lines} lines", path.display()))
         .collect();
     assert!(long.is_empty(), "over {MAX_LINES} lines:\n{}", long.join("\n"));
+}
+
+#[test]
+fn no_committed_file_is_large() {
+    let list = Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output().unwrap();
+    let names = String::from_utf8(list.stdout).unwrap();
+    let names: Vec<&str> = names.split_terminator('\0').collect();
+    assert!(names.len() > 50, "git lists no files: {}", String::from_utf8_lossy(&list.stderr));
+    for name in names {
+        // A file that is deleted and not yet committed has no size.
+        let bytes = std::fs::metadata(root().join(name)).map_or(0, |file| file.len());
+        assert!(bytes <= MAX_BYTES, "{name}: {bytes} bytes, over {MAX_BYTES}");
+    }
 }
 
 #[test]
