@@ -34,7 +34,7 @@ once() {
 # All hashes by the very profile that is shipped, and the size of the program.
 deep_dist() {
   local size
-  cargo test --profile dist --locked -p juggler-golden --test golden -- hashes:: matrix::
+  cargo test --profile dist --locked -p juggler-golden --test golden -- hashes:: hits:: matrix::
   cargo build --profile dist --locked -p juggler-cli
   size=$(stat -c %s "$programs/dist/juggler")
   echo "the program has $size bytes"

@@ -117,7 +117,7 @@ step_golden() {
   heading "golden: pictures and hashes, optimized"
   cargo test "${golden_optimized[@]}" -- --skip tree:: --skip arithmetic::
   heading "golden: hashes, optimized for this very processor"
-  RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" -- hashes:: matrix::
+  RUSTFLAGS="-C target-cpu=native" cargo test "${golden_native[@]}" -- hashes:: hits:: matrix::
 }
 
 # Statistics of whole pictures, which take too long unoptimized.

@@ -68,7 +68,7 @@ fn to_text(hashes: &Hashes) -> String {
 }
 
 /// What the one has and the other has not, line by line.
-fn changes(old: &str, new: &str) -> String {
+pub(crate) fn changes(old: &str, new: &str) -> String {
     let missing = |from: &str, to: &str, sign: &str| {
         let lines = from.lines().filter(|line| !to.lines().any(|other| other == *line));
         lines.map(|line| format!("{sign} {line}\n")).collect::<String>()

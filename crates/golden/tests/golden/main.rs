@@ -13,6 +13,7 @@ mod arithmetic;
 mod blur;
 mod chess;
 mod hashes;
+mod hits;
 mod instances;
 mod matrix;
 mod model;
