@@ -25,6 +25,7 @@ impl Bvh {
         let mut visits = Visits::default();
         let mut slabs = dispatch!(Level::baseline(), simd => Slabs::of_ray(simd, ray));
         let mut stack = Stack::new();
+        let mut stack = stack.view();
         stack.push(entry(ray.t_min, Child::ROOT.0));
         while let Some(top) = stack.pop() {
             let child = Child(top as u32);
@@ -43,9 +44,8 @@ impl Bvh {
                     let (mask, enter) = node.test(simd, &slabs);
                     (mask, <[f32; 8]>::from(enter))
                 });
-                let base = stack.len();
-                for slot in Bits(mask) {
-                    stack.insert(base, entry(enter[slot], node.children[slot].0));
+                for (sorted, slot) in Bits(mask).enumerate() {
+                    stack.insert(sorted, entry(enter[slot], node.children[slot].0));
                 }
             }
         }

@@ -112,6 +112,13 @@ pub trait Leaf {
         }
     }
 
+    /// The ends of the eight rays from number `first` on, in [`Ray::t_max`]'s unit, where the visitor keeps them side by
+    /// side; the rays themselves need not be shortened then. By default `None`: the rays are read.
+    #[inline(always)]
+    fn packet_t_max(&self, _first: usize) -> Option<&[f32; PACKET]> {
+        None
+    }
+
     /// [`Leaf::any`] for several rays of a packet: a bit for each that is occluded.
     #[inline(always)]
     fn any_many(&mut self, first: usize, active: u32, rays: &[Ray], items: Range<u32>) -> u32 {

@@ -88,13 +88,13 @@ impl MovingBvh {
     #[inline(always)]
     pub(crate) fn closest_one<S: Lanes>(&self, simd: S, ray: &mut Ray, leaf: &mut impl Leaf) {
         let (boxes, slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
-        closest_below(simd, boxes, Child::ROOT, &mut Stack::new(), (0, ray), slabs, leaf);
+        closest_below(simd, boxes, Child::ROOT, Stack::new().view(), (0, ray), slabs, leaf);
     }
 
     #[inline(always)]
     pub(crate) fn any_one<S: Lanes>(&self, simd: S, ray: &Ray, leaf: &mut impl Leaf) -> bool {
         let (boxes, slabs) = (self.boxes(ray), Slabs::of_ray(simd, ray));
-        any_below(simd, boxes, Child::ROOT, &mut Stack::new(), (0, ray), &slabs, leaf)
+        any_below(simd, boxes, Child::ROOT, Stack::new().view(), (0, ray), &slabs, leaf)
     }
 
     /// The ray's time as a share of the time that the shutter is open, 0 to 1.

@@ -5,12 +5,12 @@
 //! have missed, for the price of one. The interval's test never misses what one of its rays meets. Where few
 //! rays are left in a box they go on alone.
 
-use crate::lanes::{Lanes, max};
+use crate::lanes::{Bits, Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
 use crate::single::{any_below, closest_below, nearest};
 use crate::slabs::{Bundle, Extent, Slabs};
-use crate::stack::{Stack, distance};
+use crate::stack::{Stack, StackView, distance};
 use crate::{Bvh, Leaf};
 use fearless_simd::dispatch;
 use juggler_math::{Aabb, Ray};
@@ -19,7 +19,7 @@ use juggler_math::{Aabb, Ray};
 pub const PACKET: usize = WIDTH;
 /// Rays whose interval is tested as one: several packets, for the nodes on the way are mostly the same.
 pub(crate) const GROUP: usize = PACKETS * PACKET;
-const PACKETS: usize = 4;
+pub(crate) const PACKETS: usize = 4;
 /// Rays are neighbours when origins differ by less than this share of the scene, and directions of their length.
 const NARROW: f32 = 0.25;
 /// With so few rays left in a box they go on alone.
@@ -122,7 +122,7 @@ impl Bvh {
             let found = if group.fill(simd, rays) {
                 self.any_group(simd, &mut stack, first, rays, &group, leaf)
             } else {
-                self.any_alone(simd, Child::ROOT, &mut stack, first, u32::MAX, rays, leaf)
+                self.any_alone(simd, Child::ROOT, stack.view(), first, u32::MAX, rays, leaf)
             };
             for (lane, occluded) in occluded.iter_mut().enumerate() {
                 *occluded = found >> lane & 1 != 0;
@@ -142,7 +142,8 @@ impl Bvh {
         leaf: &mut impl Leaf,
     ) {
         let nodes = &*self.nodes;
-        let mut next = self.nearest_slot(simd, Child::ROOT, &group.bundle, stack);
+        let mut stack = stack.view();
+        let mut next = self.nearest_slot(simd, Child::ROOT, &group.bundle, &mut stack);
         loop {
             let place = match next {
                 Some(place) => place as usize,
@@ -155,7 +156,7 @@ impl Bvh {
             let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
             let child = parent.children[slot];
             if !child.is_leaf() {
-                next = self.nearest_slot(simd, child, &group.bundle, stack);
+                next = self.nearest_slot(simd, child, &group.bundle, &mut stack);
                 continue;
             }
             next = None;
@@ -164,7 +165,10 @@ impl Bvh {
                 let active = lanes.test(simd, &parent.bounds, slot);
                 if active != 0 {
                     leaf.closest_many(first + number * WIDTH, active, rays, child.items());
-                    lanes.shorten(active, rays);
+                    match leaf.packet_t_max(first + number * WIDTH) {
+                        Some(t_max) => lanes.shorten_to(simd, t_max),
+                        None => lanes.shorten(active, rays),
+                    }
                 }
                 t_max = max(lanes.farthest, t_max);
             }
@@ -174,15 +178,27 @@ impl Bvh {
 
     /// The nearest child that the bundle may meet, as a place (node and slot in one number); pushes the others.
     #[inline(always)]
-    fn nearest_slot<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut Stack) -> Option<u32> {
+    fn nearest_slot<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut StackView) -> Option<u32> {
         let (mask, enter) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
         nearest(
             mask,
             &enter.into(),
             stack,
             #[inline(always)]
-            |slot| node.0 * WIDTH as u32 + slot as u32,
+            |slot| place_of(node, slot),
         )
+    }
+
+    /// The last of the children that the bundle may meet, as a place: the largest one, which most likely holds a hit.
+    /// Pushes the others.
+    #[inline(always)]
+    fn last_slot<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut StackView) -> Option<u32> {
+        let (mask, _) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
+        let last = mask.checked_ilog2()?;
+        for slot in Bits(mask ^ 1 << last) {
+            stack.push(place_of(node, slot).into());
+        }
+        Some(place_of(node, last as usize))
     }
 
     /// Traces the rays one by one.
@@ -200,7 +216,7 @@ impl Bvh {
             || {
                 for (lane, ray) in rays.iter_mut().enumerate() {
                     let slabs = Slabs::of_ray(simd, ray);
-                    closest_below(simd, &*self.nodes, Child::ROOT, stack, (first + lane, ray), slabs, leaf);
+                    closest_below(simd, &*self.nodes, Child::ROOT, stack.view(), (first + lane, ray), slabs, leaf);
                 }
             },
         );
@@ -220,7 +236,8 @@ impl Bvh {
         let nodes = &*self.nodes;
         let all = u32::MAX >> (GROUP - rays.len());
         let mut found = 0;
-        let mut next = self.nearest_slot(simd, Child::ROOT, &group.bundle, stack);
+        let mut stack = stack.view();
+        let mut next = self.last_slot(simd, Child::ROOT, &group.bundle, &mut stack);
         while found != all {
             let place = match next {
                 Some(place) => place as usize,
@@ -245,23 +262,23 @@ impl Bvh {
                     }
                 }
             } else if active.count_ones() > FEW {
-                next = self.nearest_slot(simd, child, &group.bundle, stack);
+                next = self.last_slot(simd, child, &group.bundle, &mut stack);
             } else {
-                found |= self.any_alone(simd, child, stack, first, active, rays, leaf);
+                found |= self.any_alone(simd, child, stack.above(), first, active, rays, leaf);
             }
         }
-        stack.truncate(0);
+        stack.clear();
         found
     }
 
-    /// Which of the active rays, each on its own, hit something in the subtree at `from`.
+    /// Which of the active rays, each on its own, hit something in the subtree at `from`; the stack is empty.
     #[allow(clippy::too_many_arguments)]
     #[inline(never)]
     fn any_alone<S: Lanes>(
         &self,
         simd: S,
         from: Child,
-        stack: &mut Stack,
+        mut stack: StackView,
         base: usize,
         active: u32,
         rays: &[Ray],
@@ -274,7 +291,8 @@ impl Bvh {
                 for (lane, ray) in rays.iter().enumerate() {
                     if active >> lane & 1 != 0 {
                         let slabs = Slabs::of_ray(simd, ray);
-                        let hit = any_below(simd, &*self.nodes, from, stack, (base + lane, ray), &slabs, leaf);
+                        let ray = (base + lane, ray);
+                        let hit = any_below(simd, &*self.nodes, from, stack.above(), ray, &slabs, leaf);
                         found |= u32::from(hit) << lane;
                     }
                 }
@@ -282,4 +300,10 @@ impl Bvh {
             },
         )
     }
+}
+
+/// A child's node and slot in one number.
+#[inline(always)]
+fn place_of(node: Child, slot: usize) -> u32 {
+    node.0 * WIDTH as u32 + slot as u32
 }

@@ -5,6 +5,7 @@ use bytemuck::Pod;
 use memmap2::MmapMut;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
+use std::ptr::NonNull;
 
 /// Arrays below this many bytes live in a plain vector.
 const SMALL: usize = 1 << 20;
@@ -13,36 +14,44 @@ const HUGE: usize = 1 << 21;
 
 /// An array of fixed length, on huge pages when it is large and the system has them.
 pub(crate) struct Pages<T> {
-    memory: Memory<T>,
+    /// The elements: inside of `map`, else a boxed slice that the array owns. One pointer for both, for it is followed
+    /// with every ray.
+    elements: NonNull<[T]>,
+    map: Option<MmapMut>,
 }
 
-enum Memory<T> {
-    /// `len` elements from byte `start` of the map: inside of it and aligned.
-    Map {
-        map: MmapMut,
-        start: usize,
-        len: usize,
-    },
-    Plain(Vec<T>),
-}
+#[expect(unsafe_code, reason = "an array owns its elements, which a pointer does not say")]
+// SAFETY: `elements` is not shared with anything but `map`, which nobody else reads or writes; as a `Vec<T>`.
+unsafe impl<T: Send> Send for Pages<T> {}
+#[expect(unsafe_code, reason = "an array owns its elements, which a pointer does not say")]
+// SAFETY: as above; only `&mut self` writes.
+unsafe impl<T: Sync> Sync for Pages<T> {}
 
 impl<T: Pod> Pages<T> {
     /// `len` elements whose bytes are all zero.
     pub fn zeroed(len: usize) -> Self {
-        let memory = Self::map(len).unwrap_or_else(|| Memory::Plain(vec![T::zeroed(); len]));
-        Self { memory }
+        Self::mapped(len).unwrap_or_else(|| Self::boxed(vec![T::zeroed(); len]))
     }
 
-    /// Anonymous memory comes zeroed. `None` where the array is small or there is no such memory.
-    fn map(len: usize) -> Option<Memory<T>> {
+    fn boxed(elements: Vec<T>) -> Self {
+        Self { elements: NonNull::from(Box::leak(elements.into_boxed_slice())), map: None }
+    }
+
+    /// Zeroed elements on pages of their own; `None` where the array is small or there is no such memory.
+    fn mapped(len: usize) -> Option<Self> {
         let bytes = len.checked_mul(size_of::<T>()).filter(|&bytes| bytes >= SMALL)?;
-        let map = MmapMut::map_anon(bytes.checked_add(HUGE)?).ok()?;
+        // Anonymous memory comes zeroed.
+        let mut map = MmapMut::map_anon(bytes.checked_add(HUGE)?).ok()?;
         let start = map.as_ptr().align_offset(HUGE);
         let fits = start.checked_add(bytes).is_some_and(|end| end <= map.len());
+        if !fits || align_of::<T>() > HUGE {
+            return None;
+        }
         // A wish: where it is refused, small pages do.
         #[cfg(target_os = "linux")]
         let _ = map.advise(memmap2::Advice::HugePage);
-        (fits && align_of::<T>() <= HUGE).then_some(Memory::Map { map, start, len })
+        let first = NonNull::new(map.as_mut_ptr().wrapping_add(start).cast())?;
+        Some(Self { elements: NonNull::slice_from_raw_parts(first, len), map: Some(map) })
     }
 
     /// Bytes of memory that the elements take.
@@ -55,28 +64,29 @@ impl<T: Pod> Deref for Pages<T> {
     type Target = [T];
 
     #[inline(always)]
-    #[expect(unsafe_code, reason = "checked casts cost every single ray 9 % more instructions")]
+    #[expect(unsafe_code, reason = "checked casts cost every single ray 9 % more instructions, an enum 3 %")]
     fn deref(&self) -> &[T] {
-        match &self.memory {
-            // SAFETY: `Pages::map` has checked that the elements lie inside of the map, aligned; the map lives as
-            // long as `self`, is never resized, came zeroed, and every pattern of bits is a `T: Pod`.
-            Memory::Map { map, start, len } => unsafe {
-                std::slice::from_raw_parts(map.as_ptr().wrapping_add(*start).cast(), *len)
-            },
-            Memory::Plain(elements) => elements,
-        }
+        // SAFETY: `elements` is a leaked box, or `mapped` has checked that it lies inside of `map`, aligned; `map` lives
+        // as long as `self`, is never resized, came zeroed, and every pattern of bits is a `T: Pod`.
+        unsafe { self.elements.as_ref() }
     }
 }
 
 impl<T: Pod> DerefMut for Pages<T> {
     #[inline]
+    #[expect(unsafe_code, reason = "as above")]
     fn deref_mut(&mut self) -> &mut [T] {
-        match &mut self.memory {
-            Memory::Map { map, start, len } => {
-                let bytes = *start..*start + *len * size_of::<T>();
-                bytemuck::cast_slice_mut(&mut map[bytes])
-            }
-            Memory::Plain(elements) => elements,
+        // SAFETY: as above; `&mut self` makes the access exclusive.
+        unsafe { self.elements.as_mut() }
+    }
+}
+
+impl<T> Drop for Pages<T> {
+    #[expect(unsafe_code, reason = "a boxed slice is freed by who owns it")]
+    fn drop(&mut self) {
+        if self.map.is_none() {
+            // SAFETY: without a map `elements` was leaked from a box by `boxed`, and this is its only owner.
+            drop(unsafe { Box::from_raw(self.elements.as_ptr()) });
         }
     }
 }
@@ -92,13 +102,12 @@ impl<T: Pod> Clone for Pages<T> {
 impl<T: Pod> From<Vec<T>> for Pages<T> {
     /// Copies the elements where the array is large.
     fn from(elements: Vec<T>) -> Self {
-        match Self::map(elements.len()) {
-            Some(memory) => {
-                let mut pages = Self { memory };
+        match Self::mapped(elements.len()) {
+            Some(mut pages) => {
                 pages.copy_from_slice(&elements);
                 pages
             }
-            None => Self { memory: Memory::Plain(elements) },
+            None => Self::boxed(elements),
         }
     }
 }
@@ -137,7 +146,7 @@ mod tests {
     #[test]
     fn large_arrays_are_aligned_to_huge_pages() {
         let pages = Pages::<Line>::zeroed(SMALL);
-        if let Memory::Map { .. } = pages.memory {
+        if pages.map.is_some() {
             assert_eq!(pages.as_ptr().align_offset(HUGE), 0);
         }
         assert_eq!(format!("{:?}", Pages::from(vec![Line([3; 16])])), format!("{:?}", [Line([3; 16])]));

@@ -79,6 +79,15 @@ impl RayLanes {
         self.farthest = self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a));
     }
 
+    /// [`RayLanes::shorten`] of all rays to ends that lie side by side; lanes without a ray still meet nothing.
+    #[inline(always)]
+    pub fn shorten_to<S: Lanes>(&mut self, simd: S, t_max: &[f32; WIDTH]) {
+        let t_max = simd.least(simd.load(t_max) * SLACK, simd.splat(f32::MAX));
+        let t_max = simd.least(t_max, simd.load(&self.t_max));
+        self.t_max = t_max.into();
+        self.farthest = self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a));
+    }
+
     /// Which rays meet the box in `slot` of the bounds (bit per lane).
     #[inline(always)]
     pub fn test<S: Lanes>(&self, simd: S, bounds: &[[[f32; WIDTH]; 2]; 3], slot: usize) -> u32 {

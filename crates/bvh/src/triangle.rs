@@ -5,8 +5,8 @@
 //! the origin of the plane lies. Two triangles that share an edge compute the same number for it with
 //! opposite sign, so no ray can pass between them. Both faces are hit.
 //!
-//! Deviations from the paper: the winding is not kept, for nothing is culled by it; single precision only tells
-//! misses (a product difference rounds to zero or keeps its sign), weights and distance of hits are always summed
+//! Deviations from the paper: the winding is not kept, for nothing is culled by it; single precision, eight triangles at
+//! a time, only tells misses (a product difference rounds to zero or keeps its sign), weights and distance of hits are always summed
 //! in double precision; and the distance is never before the entry of the triangle's own box, so that which hit is
 //! closest cannot depend on the order in which boxes are visited.
 
@@ -25,8 +25,8 @@ pub enum TriangleTest {
     #[default]
     Watertight,
     /// In single precision: slender triangles may be off by thousands of ulp, so that rays that leave them may
-    /// meet them again. For queries that want no more than a hit. Where [spatial splits](crate::Quality::Best) divide such
-    /// triangles, which of two hits within that error counts may depend on the call.
+    /// meet them again. For queries that want no more than a hit. Which of two hits within that error is the closest may
+    /// depend on the call.
     Fast,
 }
 
@@ -39,7 +39,7 @@ pub fn intersect_triangle(ray: &Ray, a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, 
     let signs = (0..3).fold(0, |signs, axis| signs | u32::from(ray.direction[axis].is_sign_negative()) << axis);
     let shear = Shear::of(ray, [x, y, z, 0.0], signs);
     let corners = [a, b, c].map(|corner| shear.axes.map(|axis| corner[axis]));
-    let hit = shear.intersect(TriangleTest::Watertight, ray, corners)?;
+    let hit = shear.intersect(ray, corners)?;
     has_area([a, b, c]).then_some(hit)
 }
 
@@ -97,13 +97,10 @@ impl Shear {
     /// [`intersect_triangle`] for the ray that the shear was made of and a triangle that [has an area](has_area), its
     /// coordinates in the order of [`Shear::axes`].
     #[inline(always)]
-    pub fn intersect(&self, test: TriangleTest, ray: &Ray, corners: [Point; 3]) -> Option<(f32, f32, f32)> {
+    pub fn intersect(&self, ray: &Ray, corners: [Point; 3]) -> Option<(f32, f32, f32)> {
         let points = [self.project(corners[0]), self.project(corners[1]), self.project(corners[2])];
         let end = max(points[0][2], max(points[1][2], points[2][2]));
-        let (t, u, v) = match test {
-            TriangleTest::Watertight => weigh(points)?,
-            TriangleTest::Fast => weigh_fast(points)?,
-        };
+        let (t, u, v) = weigh(points)?;
         let (t_min, t_max) = (ray.t_min, ray.t_max);
         let t_clamped = self.clamp(t, corners);
         let t_max = min(t_max, FARTHEST);
@@ -134,41 +131,20 @@ impl Shear {
 /// In double precision products are exact. So what is found lies on the triangle of the given points, and is off by
 /// no more than their own rounding, however slender the triangle is.
 #[inline(always)]
-pub(crate) fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
-    if outside(edges(points.map(|[x, y, _]| [x, y]))) {
-        return None;
-    }
-    // Zeros of single precision have a sign here.
-    let edges = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
-    let determinant = edges[0] + edges[1] + edges[2];
-    if outside(edges) || determinant == 0.0 || !determinant.is_finite() {
+fn weigh(points: [Point; 3]) -> Option<(f32, f32, f32)> {
+    let [e, f, g] = edges(points.map(|[x, y, _]| [f64::from(x), f64::from(y)]));
+    let determinant = e + f + g;
+    // Selections, for the signs of edges are hard to guess for the processor.
+    let less = |a: f64, b: f64| if a < b { a } else { b };
+    let more = |a: f64, b: f64| if a > b { a } else { b };
+    let outside = (less(e, less(f, g)) < 0.0) & (more(e, more(f, g)) > 0.0);
+    if outside | (determinant == 0.0) | !determinant.is_finite() {
         return None;
     }
     let inverse = 1.0 / determinant;
-    let [u, v, w] = [edges[0] * inverse, edges[1] * inverse, edges[2] * inverse];
+    let [u, v, w] = [e * inverse, f * inverse, g * inverse];
     let [a, b, c] = points.map(|p| f64::from(p[2]));
     Some(((u * a + v * b + w * c) as f32, v as f32, w as f32))
-}
-
-/// [`weigh`] in single precision.
-#[inline(always)]
-fn weigh_fast(points: [Point; 3]) -> Option<(f32, f32, f32)> {
-    let [e, f, g] = edges(points.map(|[x, y, _]| [x, y]));
-    let determinant = e + f + g;
-    if outside([e, f, g]) || determinant == 0.0 {
-        return None;
-    }
-    let inverse = 1.0 / determinant;
-    let (e, f, g) = (e * inverse, f * inverse, g * inverse);
-    let t = e * points[0][2] + f * points[1][2] + g * points[2][2];
-    t.is_finite().then_some((t, f, g))
-}
-
-/// Whether the axis passes edges on different sides.
-#[inline(always)]
-fn outside<T: Copy + Default + PartialOrd>(edges: [T; 3]) -> bool {
-    let zero = T::default();
-    edges.iter().any(|&e| e < zero) && edges.iter().any(|&e| e > zero)
 }
 
 /// Twice the signed areas between the axis and each edge, in the order of the opposite corners.

@@ -47,7 +47,7 @@ impl<'a, S: Lanes, F: Filter> Flight<'a, S, F> {
         self.slabs = Slabs::of_ray(simd, ray);
         self.one = One::new(simd, query, ray, &self.slabs);
         self.current = Child::ROOT;
-        self.stack.truncate(0);
+        self.stack.clear();
     }
 }
 
@@ -128,7 +128,7 @@ impl<'a, F: Filter> Query<'a, F> {
             nearest(
                 mask,
                 &enter.into(),
-                &mut flight.stack,
+                &mut flight.stack.view(),
                 #[inline(always)]
                 |slot| node.children[slot].0,
             )
@@ -147,7 +147,7 @@ impl<'a, F: Filter> Query<'a, F> {
         } else {
             let node = &self.tree.bvh.nodes[flight.current.0 as usize];
             let (mask, _) = node.test(simd, &flight.slabs);
-            first(node, mask, &mut flight.stack).map(|child| child.0)
+            first(node, mask, &mut flight.stack.view()).map(|child| child.0)
         };
         if self.fetch(flight, next) { None } else { Some(false) }
     }
@@ -157,7 +157,7 @@ impl<'a, F: Filter> Query<'a, F> {
     fn fetch<S: Lanes>(&self, flight: &mut Flight<S, F>, next: Option<u32>) -> bool {
         let next = match next {
             Some(word) => Some(Child(word)),
-            None => next_below(&mut flight.stack, 0, flight.slabs.t_max),
+            None => next_below(&mut flight.stack.view(), flight.slabs.t_max),
         };
         let Some(child) = next else { return false };
         flight.current = child;

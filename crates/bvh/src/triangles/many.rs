@@ -6,11 +6,12 @@ use super::query::Query;
 use super::{Block, LANES, TriangleHit};
 use crate::Leaf;
 use crate::lanes::{Bits, Lanes, bits, min};
-use crate::packet::{GROUP, Group, PACKET};
+use crate::packet::{Group, PACKET, PACKETS};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::Bundle;
 use crate::triangle::{FARTHEST, Shear, TriangleTest};
 use fearless_simd::prelude::*;
+use fearless_simd::{mask32x8, u32x8};
 use juggler_math::Ray;
 use std::ops::Range;
 
@@ -22,8 +23,8 @@ pub(super) struct Many<'a, S: Simd, F> {
     first: usize,
     blocks: &'a [Block],
     test: TriangleTest,
-    packets: [Packet; GROUP / PACKET],
-    pub hits: [Option<TriangleHit>; GROUP],
+    packets: [Packet; PACKETS],
+    hits: [PacketHits; PACKETS],
 }
 
 /// Rays that are longest along the same axis.
@@ -41,9 +42,17 @@ struct Packet {
 
 impl<'a, S: Lanes, F: Filter> Many<'a, S, F> {
     pub fn new(simd: S, query: Query<'a, F>) -> Self {
-        let packets = [Packet::default(); GROUP / PACKET];
+        let packets = [Packet::default(); PACKETS];
         let Query { tree, filter } = query;
-        Self { simd, filter, first: 0, blocks: &tree.blocks, test: tree.test, packets, hits: [None; GROUP] }
+        Self {
+            simd,
+            filter,
+            first: 0,
+            blocks: &tree.blocks,
+            test: tree.test,
+            packets,
+            hits: [PacketHits::NONE; PACKETS],
+        }
     }
 
     /// Forgets what it has found and turns to other rays; `false` where those of a packet have no longest axis in
@@ -51,7 +60,7 @@ impl<'a, S: Lanes, F: Filter> Many<'a, S, F> {
     #[inline(always)]
     pub fn fill(&mut self, first: usize, rays: &[Ray], group: &Group) -> bool {
         self.first = first;
-        self.hits = [None; GROUP];
+        self.hits = [PacketHits::NONE; PACKETS];
         for ((packet, rays), lanes) in self.packets.iter_mut().zip(rays.chunks(PACKET)).zip(group.packets()) {
             if !packet.fill(self.simd, rays, lanes) {
                 return false;
@@ -139,6 +148,10 @@ impl Packet {
             TriangleTest::Fast => settle_fast(simd, points),
         };
         let found = simd.load(&t);
+        if test == TriangleTest::Fast {
+            let in_range = lines.t_min.simd_le(found) & found.simd_le(lines.t_max);
+            return (candidates & bits(in_range), [t, u, v]);
+        }
         let mut clamped = found;
         for axis in 0..3 {
             let near = simd.splat(Shear::near(&corners, axis, self.side[axis]));
@@ -150,13 +163,78 @@ impl Packet {
     }
 }
 
-impl<S: Lanes, F: Filter> Many<'_, S, F> {
+/// The closest hits of a packet's rays, side by side.
+#[derive(Clone, Copy)]
+struct PacketHits {
+    t: [f32; LANES],
+    u: [f32; LANES],
+    v: [f32; LANES],
+    /// `u32::MAX` where nothing is hit.
+    index: [u32; LANES],
+}
+
+impl PacketHits {
+    const NONE: Self = Self { t: [f32::INFINITY; LANES], u: [0.0; LANES], v: [0.0; LANES], index: [u32::MAX; LANES] };
+
     #[inline(always)]
-    fn keep(&mut self, lane: usize, hit: TriangleHit, ray: &mut Ray) {
-        if hit.is_before(&self.hits[lane]) && self.filter.accepts(self.first + lane, &hit) {
-            self.hits[lane] = Some(hit);
-            ray.t_max = hit.t;
-            self.packets[lane / LANES].t_max[lane % LANES] = hit.t;
+    fn get(&self, lane: usize) -> Option<TriangleHit> {
+        let hit = TriangleHit { t: self.t[lane], u: self.u[lane], v: self.v[lane], index: self.index[lane] };
+        (hit.index != u32::MAX).then_some(hit)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, hit: TriangleHit) {
+        (self.t[lane], self.u[lane], self.v[lane], self.index[lane]) = (hit.t, hit.u, hit.v, hit.index);
+    }
+
+    /// Keeps the hits with one triangle of the rays in `mask`, where they are closer than what is known; says which.
+    #[inline(always)]
+    fn keep<S: Lanes>(&mut self, simd: S, mask: u32, [t, u, v]: &[[f32; LANES]; 3], index: u32) -> mask32x8<S> {
+        let (new_t, old_t) = (simd.load(t), simd.load(&self.t));
+        let (new, old): (u32x8<S>, u32x8<S>) = (u32x8::splat(simd, index), self.index.simd_into(simd));
+        let is_closer = new_t.simd_lt(old_t) | (new_t.simd_eq(old_t) & new.simd_lt(old));
+        let lane: u32x8<S> = [1, 2, 4, 8, 16, 32, 64, 128].simd_into(simd);
+        let in_mask = !(lane & u32x8::splat(simd, mask)).simd_eq(0);
+        let kept = is_closer & in_mask;
+        self.t = kept.select(new_t, old_t).into();
+        self.u = kept.select(simd.load(u), simd.load(&self.u)).into();
+        self.v = kept.select(simd.load(v), simd.load(&self.v)).into();
+        self.index = kept.select(new, old).into();
+        kept
+    }
+}
+
+impl<S: Lanes, F: Filter> Many<'_, S, F> {
+    /// Writes the hits, and lets the rays end at them.
+    #[inline(always)]
+    pub fn write_hits(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
+        let packets = rays.chunks_mut(PACKET).zip(hits.chunks_mut(PACKET));
+        for (found, (rays, hits)) in self.hits.iter().zip(packets) {
+            for (lane, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
+                *hit = found.get(lane);
+                if let Some(hit) = hit {
+                    ray.t_max = hit.t;
+                }
+            }
+        }
+    }
+
+    /// Keeps the hits of the rays in `mask` of a packet with one triangle, where they are the closest and count.
+    #[inline(always)]
+    fn keep(&mut self, number: usize, mask: u32, [t, u, v]: &[[f32; LANES]; 3], index: u32) {
+        let (simd, packet, hits) = (self.simd, &mut self.packets[number], &mut self.hits[number]);
+        if F::ALL {
+            let kept = hits.keep(simd, mask, &[*t, *u, *v], index);
+            packet.t_max = kept.select(simd.load(t), simd.load(&packet.t_max)).into();
+            return;
+        }
+        for lane in Bits(mask) {
+            let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index };
+            let ray = self.first + number * LANES + lane;
+            if hit.is_before(&hits.get(lane)) && self.filter.accepts(ray, &hit) {
+                hits.set(lane, hit);
+                packet.t_max[lane] = hit.t;
+            }
         }
     }
 
@@ -165,53 +243,42 @@ impl<S: Lanes, F: Filter> Many<'_, S, F> {
     fn candidates(&self, block: &Block, first: usize, count: usize) -> u32 {
         block.test_bundle(self.simd, &self.packets[first / LANES].bundle) & ((1 << count) - 1)
     }
-
-    /// One ray, and the triangles of a block that it may hit.
-    #[inline(always)]
-    fn alone(&self, lane: usize, ray: &Ray, block: &Block, count: usize) -> (Shear, u32) {
-        let shear = self.packets[lane / LANES].shear(lane % LANES);
-        let lines = Lines::of_one(self.simd, &shear, ray.t_min, ray.t_max);
-        let corners = block.corners(self.simd, shear.axes);
-        (shear, lines.candidates(self.simd, &corners, (1 << count) - 1).0)
-    }
 }
 
 impl<S: Lanes, F: Filter> Leaf for Many<'_, S, F> {
     #[inline(always)]
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>) {
-        let blocks = self.blocks;
-        let block = &blocks[items.start as usize];
-        let (shear, candidates) = self.alone(lane, ray, block, items.len());
-        for number in Bits(candidates) {
-            if let Some(hit) = block.hit(self.test, &shear, ray, number) {
-                self.keep(lane, hit, ray);
-            }
-        }
+        self.closest_many(lane - lane % LANES, 1 << (lane % LANES), &mut [], items);
+        ray.t_max = self.packets[lane / LANES].t_max[lane % LANES];
     }
 
     #[inline(always)]
     fn any(&mut self, lane: usize, ray: &Ray, items: Range<u32>) -> bool {
         let block = &self.blocks[items.start as usize];
-        let (shear, candidates) = self.alone(lane, ray, block, items.len());
-        for number in Bits(candidates) {
-            let hit = block.hit(self.test, &shear, ray, number);
-            if hit.is_some_and(|hit| self.filter.accepts(self.first + lane, &hit)) {
-                return true;
-            }
-        }
-        false
+        let shear = self.packets[lane / LANES].shear(lane % LANES);
+        block.hits(
+            self.simd,
+            (self.test, &shear, ray),
+            items.len(),
+            #[inline(always)]
+            |hit| self.filter.accepts(self.first + lane, &hit),
+        )
     }
 
     #[inline(always)]
-    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
+    fn packet_t_max(&self, first: usize) -> Option<&[f32; PACKET]> {
+        Some(&self.packets[first / LANES].t_max)
+    }
+
+    #[inline(always)]
+    fn closest_many(&mut self, first: usize, active: u32, _rays: &mut [Ray], items: Range<u32>) {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
         for number in Bits(self.candidates(block, first, items.len())) {
             let packet = &self.packets[first / LANES];
-            let (mask, [t, u, v]) = packet.rays_at(self.simd, self.test, block, (number, active));
-            for lane in Bits(mask) {
-                let hit = TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: block.index[number] };
-                self.keep(first + lane, hit, &mut rays[lane]);
+            let (mask, hits) = packet.rays_at(self.simd, self.test, block, (number, active));
+            if mask != 0 {
+                self.keep(first / LANES, mask, &hits, block.index[number]);
             }
         }
     }
@@ -222,6 +289,9 @@ impl<S: Lanes, F: Filter> Leaf for Many<'_, S, F> {
         let packet = &self.packets[first / LANES];
         let mut found = 0;
         for number in Bits(self.candidates(block, first, items.len())) {
+            if active & !found == 0 {
+                break;
+            }
             let (mask, [t, u, v]) = packet.rays_at(self.simd, self.test, block, (number, active & !found));
             if F::ALL {
                 found |= mask;

@@ -217,10 +217,10 @@ impl Block {
         self.index[lane] = triangle;
     }
 
-    /// Where the ray of the shear hits the triangle in a lane.
+    /// Where the ray of the shear hits the triangle in a lane; watertight.
     #[inline(always)]
-    fn hit(&self, test: TriangleTest, shear: &Shear, ray: &Ray, lane: usize) -> Option<TriangleHit> {
-        let (t, u, v) = shear.intersect(test, ray, self.permuted(lane, shear.axes))?;
+    fn hit(&self, shear: &Shear, ray: &Ray, lane: usize) -> Option<TriangleHit> {
+        let (t, u, v) = shear.intersect(ray, self.permuted(lane, shear.axes))?;
         Some(TriangleHit { t, u, v, index: self.index[lane & 7] })
     }
 

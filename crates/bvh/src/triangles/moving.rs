@@ -7,7 +7,7 @@ use crate::lanes::{Bits, Lanes};
 use crate::moving::between;
 use crate::pages::Pages;
 use crate::slabs::Slabs;
-use crate::triangle::{Shear, TriangleTest, has_area};
+use crate::triangle::{Shear, has_area};
 use crate::{BuildOptions, BuildStats, Leaf, MAX_ITEMS, MovingBvh, Quality, SimdLevel};
 use fearless_simd::dispatch;
 use juggler_math::{Aabb, Ray, Vec3};
@@ -127,7 +127,7 @@ impl<'a, S: Lanes> MovingOne<'a, S> {
     /// A hit on a triangle that has an area at this time.
     #[inline(always)]
     fn meet(&self, ray: &Ray, block: &Block, lane: usize) -> Option<TriangleHit> {
-        let hit = block.hit(TriangleTest::Watertight, &self.shear, ray, lane)?;
+        let hit = block.hit(&self.shear, ray, lane)?;
         has_area(block.permuted(lane, [0, 1, 2]).map(Vec3::from)).then_some(hit)
     }
 }

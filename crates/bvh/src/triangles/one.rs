@@ -1,13 +1,13 @@
 //! One ray at the leaves: eight triangles at once.
 
 use super::filter::Filter;
-use super::meet::Lines;
+use super::meet::{Lines, settle_fast};
 use super::query::Query;
 use super::{Block, TriangleHit};
 use crate::Leaf;
-use crate::lanes::{Bits, Lanes};
+use crate::lanes::{Bits, Lanes, bits, min};
 use crate::slabs::Slabs;
-use crate::triangle::{Shear, TriangleTest};
+use crate::triangle::{FARTHEST, Shear, TriangleTest};
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 use std::ops::Range;
@@ -36,37 +36,77 @@ impl<'a, S: Lanes, F: Filter> One<'a, S, F> {
     }
 }
 
-impl<S: Lanes, F: Filter> One<'_, S, F> {
-    /// Lanes of the block that the ray may hit.
-    #[inline(always)]
-    fn candidates(&self, ray: &Ray, block: &Block, count: usize) -> u32 {
-        let lines = Lines::of_one(self.simd, &self.shear, ray.t_min, ray.t_max);
-        lines.candidates(self.simd, &block.corners(self.simd, self.shear.axes), (1 << count) - 1).0
-    }
-}
-
 impl<S: Lanes, F: Filter> Leaf for One<'_, S, F> {
     #[inline(always)]
     fn closest(&mut self, number: usize, ray: &mut Ray, items: Range<u32>) {
         let block = &self.blocks[items.start as usize];
-        for lane in Bits(self.candidates(ray, block, items.len())) {
-            if let Some(hit) = block.hit(self.test, &self.shear, ray, lane)
-                && hit.is_before(&self.hit)
-                && self.filter.accepts(number, &hit)
-            {
-                self.hit = Some(hit);
-                ray.t_max = hit.t;
-            }
+        let (mut closest, filter) = (self.hit, self.filter);
+        block.hits(
+            self.simd,
+            (self.test, &self.shear, ray),
+            items.len(),
+            #[inline(always)]
+            |hit| {
+                if hit.is_before(&closest) && filter.accepts(number, &hit) {
+                    closest = Some(hit);
+                }
+                false
+            },
+        );
+        if let Some(hit) = closest {
+            self.hit = closest;
+            ray.t_max = hit.t;
         }
     }
 
     #[inline(always)]
     fn any(&mut self, number: usize, ray: &Ray, items: Range<u32>) -> bool {
         let block = &self.blocks[items.start as usize];
-        for lane in Bits(self.candidates(ray, block, items.len())) {
-            let hit = block.hit(self.test, &self.shear, ray, lane);
-            if hit.is_some_and(|hit| self.filter.accepts(number, &hit)) {
-                return true;
+        block.hits(
+            self.simd,
+            (self.test, &self.shear, ray),
+            items.len(),
+            #[inline(always)]
+            |hit| self.filter.accepts(number, &hit),
+        )
+    }
+}
+
+impl Block {
+    /// Shows the hits of one ray with the first `count` triangles, until one of them is the last that is wanted; says
+    /// whether one was.
+    #[inline(always)]
+    pub fn hits<S: Lanes>(
+        &self,
+        simd: S,
+        (test, shear, ray): (TriangleTest, &Shear, &Ray),
+        count: usize,
+        mut is_last: impl FnMut(TriangleHit) -> bool,
+    ) -> bool {
+        let lines = Lines::of_one(simd, shear, ray.t_min, min(ray.t_max, FARTHEST));
+        let (candidates, points) = lines.candidates(simd, &self.corners(simd, shear.axes), (1 << count) - 1);
+        if candidates == 0 {
+            return false;
+        }
+        match test {
+            TriangleTest::Watertight => {
+                for lane in Bits(candidates) {
+                    if let Some(hit) = self.hit(shear, ray, lane)
+                        && is_last(hit)
+                    {
+                        return true;
+                    }
+                }
+            }
+            TriangleTest::Fast => {
+                let [t, u, v] = settle_fast(simd, points);
+                let found = simd.load(&t);
+                let in_range = found.simd_ge(lines.t_min) & found.simd_le(lines.t_max);
+                for lane in Bits(candidates & bits(in_range)) {
+                    if is_last(TriangleHit { t: t[lane], u: u[lane], v: v[lane], index: self.index[lane] }) {
+                        return true;
+                    }
+                }
             }
         }
         false

@@ -6,10 +6,12 @@ use super::one::One;
 use super::{TriangleBvh, TriangleHit};
 use crate::lanes::Lanes;
 use crate::node::Child;
-use crate::packet::{GROUP, Group};
+use crate::packet::{GROUP, Group, PACKET};
 use crate::single::{any_below, closest_below};
 use crate::slabs::Slabs;
 use crate::stack::Stack;
+#[cfg(target_arch = "x86_64")]
+use fearless_simd::Simd;
 use fearless_simd::dispatch;
 use juggler_math::Ray;
 
@@ -31,11 +33,55 @@ impl<F: Filter> Query<'_, F> {
 
     /// The ray with this number.
     fn closest_of(&self, number: usize, ray: &Ray) -> Option<TriangleHit> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let level = self.tree.bvh.level;
+            if let Some(simd) = level.as_avx512() {
+                return simd.vectorize(
+                    #[inline(always)]
+                    || self.closest_one(simd, number, ray),
+                );
+            }
+            if let Some(simd) = level.as_avx2() {
+                return simd.vectorize(
+                    #[inline(always)]
+                    || self.closest_one(simd, number, ray),
+                );
+            }
+        }
+        self.closest_of_lesser(number, ray)
+    }
+
+    /// [`Query::closest_of`] on lesser vector units. Their kernel would be inlined, and every ray pay for its frame.
+    #[inline(never)]
+    fn closest_of_lesser(&self, number: usize, ray: &Ray) -> Option<TriangleHit> {
         dispatch!(self.tree.bvh.level, simd => self.closest_one(simd, number, ray))
     }
 
     /// The ray with this number.
     fn any_of(&self, number: usize, ray: &Ray) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let level = self.tree.bvh.level;
+            if let Some(simd) = level.as_avx512() {
+                return simd.vectorize(
+                    #[inline(always)]
+                    || self.any_one(simd, number, ray),
+                );
+            }
+            if let Some(simd) = level.as_avx2() {
+                return simd.vectorize(
+                    #[inline(always)]
+                    || self.any_one(simd, number, ray),
+                );
+            }
+        }
+        self.any_of_lesser(number, ray)
+    }
+
+    /// As [`Query::closest_of_lesser`].
+    #[inline(never)]
+    fn any_of_lesser(&self, number: usize, ray: &Ray) -> bool {
         dispatch!(self.tree.bvh.level, simd => self.any_one(simd, number, ray))
     }
 
@@ -47,7 +93,7 @@ impl<F: Filter> Query<'_, F> {
             simd,
             &*self.tree.bvh.nodes,
             Child::ROOT,
-            &mut Stack::new(),
+            Stack::new().view(),
             (number, &mut { *ray }),
             slabs,
             &mut one,
@@ -59,7 +105,7 @@ impl<F: Filter> Query<'_, F> {
     fn any_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> bool {
         let slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, *self, ray, &slabs);
-        any_below(simd, &*self.tree.bvh.nodes, Child::ROOT, &mut Stack::new(), (number, ray), &slabs, &mut one)
+        any_below(simd, &*self.tree.bvh.nodes, Child::ROOT, Stack::new().view(), (number, ray), &slabs, &mut one)
     }
 
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
@@ -79,30 +125,32 @@ impl<F: Filter> Query<'_, F> {
             let first = number * GROUP;
             if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && many.fill(first, rays, &group) {
                 self.tree.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
-                hits.copy_from_slice(&many.hits[..hits.len()]);
-                continue;
-            }
-            for (lane, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
-                *hit = self.closest_of(first + lane, ray);
-                ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
+                many.write_hits(rays, hits);
+            } else {
+                self.closest_each(simd, &mut stack, first, rays, hits);
             }
         }
     }
 
+    /// Rays that are no group of 32 are tried as packets of eight, and then alone.
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
         let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, *self));
         for (number, (rays, occluded)) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)).enumerate() {
             let first = number * GROUP;
-            if group.fill(simd, rays) && many.fill(first, rays, &group) {
+            let whole = group.fill(simd, rays) && many.fill(first, rays, &group);
+            let size = if whole { GROUP } else { PACKET };
+            for (number, (rays, occluded)) in rays.chunks(size).zip(occluded.chunks_mut(size)).enumerate() {
+                let first = first + number * size;
+                let together = whole || group.fill(simd, rays) && many.fill(first, rays, &group);
+                if !together {
+                    self.any_each(simd, &mut stack, first, rays, occluded);
+                    continue;
+                }
                 let found = self.tree.bvh.any_group(simd, &mut stack, 0, rays, &group, &mut many);
                 for (lane, occluded) in occluded.iter_mut().enumerate() {
                     *occluded = found >> lane & 1 != 0;
                 }
-                continue;
-            }
-            for (lane, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-                *occluded = self.any_of(first + lane, ray);
             }
         }
     }
@@ -112,11 +160,8 @@ impl<F: Filter> Query<'_, F> {
         let (rays, hits) = (&mut rays[..count], &mut hits[..count]);
         if self.tree.in_flight {
             dispatch!(self.tree.bvh.level, simd => self.closest_in_flight(simd, rays, hits));
-            return;
-        }
-        for (number, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
-            *hit = self.closest_of(number, ray);
-            ray.t_max = hit.map_or(ray.t_max, |hit| hit.t);
+        } else {
+            dispatch!(self.tree.bvh.level, simd => self.closest_each(simd, &mut Stack::new(), 0, rays, hits));
         }
     }
 
@@ -125,10 +170,38 @@ impl<F: Filter> Query<'_, F> {
         let (rays, occluded) = (&rays[..count], &mut occluded[..count]);
         if self.tree.in_flight {
             dispatch!(self.tree.bvh.level, simd => self.any_in_flight(simd, rays, occluded));
-            return;
+        } else {
+            dispatch!(self.tree.bvh.level, simd => self.any_each(simd, &mut Stack::new(), 0, rays, occluded));
         }
+    }
+
+    /// One ray after the other, numbered from `first` on.
+    #[inline(always)]
+    fn closest_each<S: Lanes>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        first: usize,
+        rays: &mut [Ray],
+        hits: &mut [Option<TriangleHit>],
+    ) {
+        for (number, (ray, hit)) in rays.iter_mut().zip(hits).enumerate() {
+            let slabs = Slabs::of_ray(simd, ray);
+            let mut one = One::new(simd, *self, ray, &slabs);
+            let ray = (first + number, ray);
+            closest_below(simd, &*self.tree.bvh.nodes, Child::ROOT, stack.view(), ray, slabs, &mut one);
+            *hit = one.hit;
+        }
+    }
+
+    /// [`Query::closest_each`] for any hit.
+    #[inline(always)]
+    fn any_each<S: Lanes>(&self, simd: S, stack: &mut Stack, first: usize, rays: &[Ray], occluded: &mut [bool]) {
         for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-            *occluded = self.any_of(number, ray);
+            let slabs = Slabs::of_ray(simd, ray);
+            let mut one = One::new(simd, *self, ray, &slabs);
+            let ray = (first + number, ray);
+            *occluded = any_below(simd, &*self.tree.bvh.nodes, Child::ROOT, stack.view(), ray, &slabs, &mut one);
         }
     }
 }
