@@ -104,12 +104,13 @@ pub trait Leaf {
     fn closest(&mut self, lane: usize, ray: &mut Ray, items: Range<u32>);
 
     /// [`Leaf::closest`] for several rays of a packet: those whose bit in `active` is set. Ray `i` of the slice is
-    /// lane `first + i`.
+    /// lane `first + i`. Says whether one of them may end earlier now.
     #[inline(always)]
-    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) {
+    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], items: Range<u32>) -> bool {
         for lane in lanes::Bits(active) {
             self.closest(first + lane, &mut rays[lane], items.clone());
         }
+        true
     }
 
     /// The ends of the eight rays from number `first` on, in [`Ray::t_max`]'s unit, where the visitor keeps them side by

@@ -95,21 +95,27 @@ impl Node {
         meet(simd, &self.bounds, slabs)
     }
 
-    /// Which boxes any ray of a bundle may meet (bit per slot), and where the first could enter.
+    /// [`meet_bundle`] with this node's boxes.
     #[inline(always)]
     pub fn test_bundle<S: Lanes>(&self, simd: S, bundle: &Bundle) -> (u32, f32x8<S>) {
-        let mut enter = simd.splat(bundle.t_min);
-        let mut leave = simd.splat(bundle.t_max);
-        for axis in 0..3 {
-            let (near, far) = planes(simd, &self.bounds[axis], bundle.side[axis]);
-            let near = (near - bundle.near_origin[axis]) * bundle.near_inverse[axis];
-            let far = (far - bundle.far_origin[axis]) * bundle.far_inverse[axis];
-            // In this order, so that a NaN leaves the range as it is.
-            enter = simd.most(near, enter);
-            leave = simd.least(far, leave);
-        }
-        (bits(enter.simd_le(leave)), enter)
+        meet_bundle(simd, &self.bounds, bundle)
     }
+}
+
+/// Which boxes any ray of a bundle may meet (bit per slot), and where the first could enter.
+#[inline(always)]
+pub(crate) fn meet_bundle<S: Lanes>(simd: S, bounds: &Bounds, bundle: &Bundle) -> (u32, f32x8<S>) {
+    let mut enter = simd.splat(bundle.t_min);
+    let mut leave = simd.splat(bundle.t_max);
+    for (axis, sides) in bounds.iter().enumerate() {
+        let (near, far) = planes(simd, sides, bundle.side[axis]);
+        let near = (near - bundle.near_origin[axis]) * bundle.near_inverse[axis];
+        let far = (far - bundle.far_origin[axis]) * bundle.far_inverse[axis];
+        // In this order, so that a NaN leaves the range as it is.
+        enter = simd.most(near, enter);
+        leave = simd.least(far, leave);
+    }
+    (bits(enter.simd_le(leave)), enter)
 }
 
 /// Which boxes are met (bit per slot), and where each is entered.

@@ -68,6 +68,13 @@ impl Group {
         is_near && (3..6).all(|i| high[i] - low[i] <= length * NARROW)
     }
 
+    /// The origin of all rays, where it is one.
+    #[inline(always)]
+    pub fn common_origin(&self) -> Option<[f32; 3]> {
+        let Extent { low, high, .. } = &self.extent;
+        (low[..3] == high[..3]).then_some([low[0], low[1], low[2]])
+    }
+
     /// The packets that hold rays.
     #[inline(always)]
     pub fn packets(&self) -> &[RayLanes] {
@@ -163,8 +170,7 @@ impl Bvh {
             let mut t_max = f32::NEG_INFINITY;
             for (number, (lanes, rays)) in group.packets.iter_mut().zip(rays.chunks_mut(WIDTH)).enumerate() {
                 let active = lanes.test(simd, &parent.bounds, slot);
-                if active != 0 {
-                    leaf.closest_many(first + number * WIDTH, active, rays, child.items());
+                if active != 0 && leaf.closest_many(first + number * WIDTH, active, rays, child.items()) {
                     match leaf.packet_t_max(first + number * WIDTH) {
                         Some(t_max) => lanes.shorten_to(simd, t_max),
                         None => lanes.shorten(active, rays),

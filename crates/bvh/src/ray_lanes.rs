@@ -3,6 +3,7 @@
 use crate::lanes::{Lanes, bits, max};
 use crate::node::WIDTH;
 use crate::slabs::{Bundle, Extent, SLACK, WIDEN, cull_distance};
+use crate::triangle::FARTHEST;
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
@@ -15,6 +16,8 @@ pub(crate) struct RayLanes {
     /// Of the directions, NaN where one overflows though the component is not zero.
     pub inverse: [[f32; WIDTH]; 3],
     pub t_min: [f32; WIDTH],
+    /// Of the rays, but finite.
+    pub ray_t_max: [f32; WIDTH],
     /// In the sense of [`cull_distance`].
     t_max: [f32; WIDTH],
     /// The largest of these.
@@ -60,6 +63,7 @@ impl RayLanes {
             return None;
         }
         self.t_min = t_min.into();
+        self.ray_t_max = simd.least(t_max, simd.splat(FARTHEST)).into();
         self.t_max = simd.least(t_max * SLACK, simd.splat(f32::MAX)).into();
         self.farthest = cull_distance(high[7]);
         for lane in rays.len()..WIDTH {
@@ -85,7 +89,7 @@ impl RayLanes {
         let t_max = simd.least(simd.load(t_max) * SLACK, simd.splat(f32::MAX));
         let t_max = simd.least(t_max, simd.load(&self.t_max));
         self.t_max = t_max.into();
-        self.farthest = self.t_max.iter().fold(f32::NEG_INFINITY, |a, &b| max(b, a));
+        self.farthest = t_max.reduce_max();
     }
 
     /// Which rays meet the box in `slot` of the bounds (bit per lane).

@@ -1,19 +1,24 @@
 //! Eight rays at the leaves: one triangle at a time, or eight triangles for each ray when few rays are left.
 
+use super::common_origin::CommonOrigin;
 use super::filter::Filter;
 use super::meet::{Lines, settle, settle_fast, splat};
 use super::query::Query;
 use super::{Block, LANES, TriangleHit};
 use crate::Leaf;
-use crate::lanes::{Bits, Lanes, bits, min};
+use crate::lanes::{Bits, Lanes, bits};
+use crate::node::{Bounds, meet_bundle};
 use crate::packet::{Group, PACKET, PACKETS};
 use crate::ray_lanes::RayLanes;
 use crate::slabs::Bundle;
-use crate::triangle::{FARTHEST, Shear, TriangleTest};
+use crate::triangle::{Shear, TriangleTest};
 use fearless_simd::prelude::*;
 use fearless_simd::{mask32x8, u32x8};
 use juggler_math::Ray;
 use std::ops::Range;
+
+/// With so few triangles for a packet, edges are not worth their making.
+const FEW: u32 = 4;
 
 /// Visitor for a group of packets, used again for the next group.
 pub(super) struct Many<'a, S: Simd, F> {
@@ -24,7 +29,16 @@ pub(super) struct Many<'a, S: Simd, F> {
     blocks: &'a [Block],
     test: TriangleTest,
     packets: [Packet; PACKETS],
+    /// How many of them hold rays.
+    count: usize,
     hits: [PacketHits; PACKETS],
+    /// Boxes of the triangles of the block with the number `boxes_of`.
+    boxes: Bounds,
+    boxes_of: u32,
+    /// The origin of all rays, if it is one and they are longest along one axis.
+    origin: Option<[f32; 3]>,
+    /// Made when a leaf has several triangles for a packet.
+    common_origin: CommonOrigin,
 }
 
 /// Rays that are longest along the same axis.
@@ -37,6 +51,8 @@ struct Packet {
     inverse: [[f32; LANES]; 3],
     t_min: [f32; LANES],
     t_max: [f32; LANES],
+    /// The largest of these.
+    farthest: f32,
     bundle: Bundle,
 }
 
@@ -51,28 +67,38 @@ impl<'a, S: Lanes, F: Filter> Many<'a, S, F> {
             blocks: &tree.blocks,
             test: tree.test,
             packets,
+            count: 0,
             hits: [PacketHits::NONE; PACKETS],
+            boxes: [[[0.0; LANES]; 2]; 3],
+            boxes_of: u32::MAX,
+            origin: None,
+            common_origin: CommonOrigin::default(),
         }
     }
 
     /// Forgets what it has found and turns to other rays; `false` where those of a packet have no longest axis in
     /// common.
     #[inline(always)]
-    pub fn fill(&mut self, first: usize, rays: &[Ray], group: &Group) -> bool {
+    pub fn fill(&mut self, first: usize, group: &Group) -> bool {
         self.first = first;
         self.hits = [PacketHits::NONE; PACKETS];
-        for ((packet, rays), lanes) in self.packets.iter_mut().zip(rays.chunks(PACKET)).zip(group.packets()) {
-            if !packet.fill(self.simd, rays, lanes) {
+        for (packet, lanes) in self.packets.iter_mut().zip(group.packets()) {
+            if !packet.fill(self.simd, lanes) {
                 return false;
             }
         }
+        self.count = group.packets().len();
+        self.common_origin.clear();
+        let axes = self.packets[0].axes;
+        let packets = &self.packets[..group.packets().len()];
+        self.origin = group.common_origin().filter(|_| packets.iter().all(|packet| packet.axes == axes));
         true
     }
 }
 
 impl Packet {
     #[inline(always)]
-    fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray], lanes: &RayLanes) -> bool {
+    fn fill<S: Lanes>(&mut self, simd: S, lanes: &RayLanes) -> bool {
         let (x, y) = (simd.load(&lanes.direction[0]).abs(), simd.load(&lanes.direction[1]).abs());
         let z = simd.load(&lanes.direction[2]).abs();
         let first = bits(x.simd_ge(y) & x.simd_ge(z));
@@ -86,9 +112,8 @@ impl Packet {
         let depth = simd.load(&lanes.inverse[self.axes[2]]);
         self.t_min = lanes.t_min;
         self.bundle = lanes.bundle;
-        for (t_max, ray) in self.t_max.iter_mut().zip(rays) {
-            *t_max = min(ray.t_max, FARTHEST);
-        }
+        self.t_max = lanes.ray_t_max;
+        self.farthest = lanes.bundle.t_max;
         for k in 0..3 {
             let axis = self.axes[k];
             self.side[k] = (lanes.signs >> axis) as usize & 1;
@@ -144,7 +169,7 @@ impl Packet {
             return (0, [[0.0; LANES]; 3]);
         }
         let [t, u, v] = match test {
-            TriangleTest::Watertight => settle(points),
+            TriangleTest::Watertight => settle(simd, points, candidates),
             TriangleTest::Fast => settle_fast(simd, points),
         };
         let found = simd.load(&t);
@@ -225,7 +250,8 @@ impl<S: Lanes, F: Filter> Many<'_, S, F> {
         let (simd, packet, hits) = (self.simd, &mut self.packets[number], &mut self.hits[number]);
         if F::ALL {
             let kept = hits.keep(simd, mask, &[*t, *u, *v], index);
-            packet.t_max = kept.select(simd.load(t), simd.load(&packet.t_max)).into();
+            let t_max = kept.select(simd.load(t), simd.load(&packet.t_max));
+            (packet.t_max, packet.farthest) = (t_max.into(), t_max.reduce_max());
             return;
         }
         for lane in Bits(mask) {
@@ -236,12 +262,44 @@ impl<S: Lanes, F: Filter> Many<'_, S, F> {
                 packet.t_max[lane] = hit.t;
             }
         }
+        packet.farthest = simd.load(&packet.t_max).reduce_max();
     }
 
-    /// Triangles of a block that a packet may meet.
+    /// Triangles of a leaf that a packet may meet. Their boxes are made for the first of the group's packets.
     #[inline(always)]
-    fn candidates(&self, block: &Block, first: usize, count: usize) -> u32 {
-        block.test_bundle(self.simd, &self.packets[first / LANES].bundle) & ((1 << count) - 1)
+    fn candidates(&mut self, first: usize, items: &Range<u32>) -> u32 {
+        if self.boxes_of != items.start {
+            self.boxes = self.blocks[items.start as usize].boxes(self.simd);
+            self.boxes_of = items.start;
+        }
+        let packet = &self.packets[first / LANES];
+        let (mask, _) = meet_bundle(self.simd, &self.boxes, &packet.bundle);
+        let mask = mask & ((1 << items.len()) - 1);
+        match self.origin {
+            Some(origin) if mask.count_ones() > FEW || self.common_origin.looks_at(items.start) => {
+                self.narrowed(origin, items.start, first / LANES, mask)
+            }
+            _ => mask,
+        }
+    }
+
+    /// Narrows the triangles of a block down by their edges. Out of line: most leaves have few triangles for a packet.
+    #[inline(never)]
+    fn narrowed(&mut self, origin: [f32; 3], number: u32, packet: usize, mask: u32) -> u32 {
+        let simd = self.simd;
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                if !self.common_origin.is_filled() {
+                    let axes = self.packets[0].axes;
+                    let origin = axes.map(|axis| origin[axis]);
+                    let packets = self.packets[..self.count].iter().map(|packet| &packet.factors);
+                    self.common_origin.fill(simd, (axes, origin), packets);
+                }
+                self.common_origin.look_at(simd, number, &self.blocks[number as usize]);
+                mask & self.common_origin.triangles(simd, packet, self.packets[packet].farthest)
+            },
+        )
     }
 }
 
@@ -271,27 +329,38 @@ impl<S: Lanes, F: Filter> Leaf for Many<'_, S, F> {
     }
 
     #[inline(always)]
-    fn closest_many(&mut self, first: usize, active: u32, _rays: &mut [Ray], items: Range<u32>) {
+    fn closest_many(&mut self, first: usize, active: u32, _rays: &mut [Ray], items: Range<u32>) -> bool {
         let blocks = self.blocks;
         let block = &blocks[items.start as usize];
-        for number in Bits(self.candidates(block, first, items.len())) {
+        let mut is_hit = false;
+        for number in Bits(self.candidates(first, &items)) {
+            let mut active = active;
+            if self.common_origin.looks_at(items.start) {
+                active &= self.common_origin.rays(self.simd, first / LANES, number);
+                if active == 0 {
+                    continue;
+                }
+            }
             let packet = &self.packets[first / LANES];
             let (mask, hits) = packet.rays_at(self.simd, self.test, block, (number, active));
             if mask != 0 {
                 self.keep(first / LANES, mask, &hits, block.index[number]);
+                is_hit = true;
             }
         }
+        is_hit
     }
 
     #[inline(always)]
     fn any_many(&mut self, first: usize, active: u32, _rays: &[Ray], items: Range<u32>) -> u32 {
-        let block = &self.blocks[items.start as usize];
-        let packet = &self.packets[first / LANES];
+        let blocks = self.blocks;
+        let block = &blocks[items.start as usize];
         let mut found = 0;
-        for number in Bits(self.candidates(block, first, items.len())) {
+        for number in Bits(self.candidates(first, &items)) {
             if active & !found == 0 {
                 break;
             }
+            let packet = &self.packets[first / LANES];
             let (mask, [t, u, v]) = packet.rays_at(self.simd, self.test, block, (number, active & !found));
             if F::ALL {
                 found |= mask;

@@ -4,8 +4,8 @@
 
 use crate::lanes::{Lanes, bits};
 use crate::triangle::{Shear, edges};
-use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, f64x4};
 
 /// Eight rays in the frames that their shears make, or one ray eight times.
 #[derive(Clone, Copy)]
@@ -64,34 +64,48 @@ impl<S: Lanes> Lines<S> {
     }
 }
 
-/// The second half for all eight lanes: distances, and weights of the second and third corner; a distance that is
-/// no number where the line passes outside. As [`weigh`](crate::triangle::weigh) does it.
+/// The second half for the candidates: distances, and weights of the second and third corner; a distance that is
+/// no number where the line passes outside. Operation by operation as [`Shear::intersect`] does it, four lanes at a time:
+/// mostly all candidates are neighbours in one half.
 #[inline(always)]
-pub(super) fn settle<S: Lanes>([a, b, c]: [Corner<S>; 3]) -> [[f32; 8]; 3] {
-    let [ax, ay, az]: [[f32; 8]; 3] = [a[0].into(), a[1].into(), a[2].into()];
-    let [bx, by, bz]: [[f32; 8]; 3] = [b[0].into(), b[1].into(), b[2].into()];
-    let [cx, cy, cz]: [[f32; 8]; 3] = [c[0].into(), c[1].into(), c[2].into()];
-    let (mut t, mut u, mut v) = ([0.0; 8], [0.0; 8], [0.0; 8]);
-    for lane in 0..8 {
-        let double = |number: f32| f64::from(number);
-        let [ax, ay, az] = [double(ax[lane]), double(ay[lane]), double(az[lane])];
-        let [bx, by, bz] = [double(bx[lane]), double(by[lane]), double(bz[lane])];
-        let [cx, cy, cz] = [double(cx[lane]), double(cy[lane]), double(cz[lane])];
-        let [e, f, g] = edges([[ax, ay], [bx, by], [cx, cy]]);
-        let determinant = e + f + g;
-        let misses = (e < 0.0) | (f < 0.0) | (g < 0.0);
-        let outside = misses & ((e > 0.0) | (f > 0.0) | (g > 0.0));
-        let flat = (determinant == 0.0) | !determinant.is_finite();
-        let inverse = 1.0 / determinant;
-        let (e, f, g) = (e * inverse, f * inverse, g * inverse);
-        let distance = (e * az + f * bz + g * cz) as f32;
-        t[lane] = if outside | flat { f32::NAN } else { distance };
-        (u[lane], v[lane]) = (f as f32, g as f32);
+pub(super) fn settle<S: Lanes>(simd: S, [a, b, c]: [Corner<S>; 3], candidates: u32) -> [[f32; 8]; 3] {
+    let none = f64x4::splat(simd, f64::NAN);
+    let ([a_low, a_high], [b_low, b_high], [c_low, c_high]) = (halves(a), halves(b), halves(c));
+    let (mut low, mut high) = ([none; 3], [none; 3]);
+    if candidates & 0x0f != 0 {
+        low = settle_half(simd, [a_low, b_low, c_low]);
     }
-    [t, u, v]
+    if candidates & 0xf0 != 0 {
+        high = settle_half(simd, [a_high, b_high, c_high]);
+    }
+    let [t, u, v] = [low[0].narrow(high[0]), low[1].narrow(high[1]), low[2].narrow(high[2])];
+    [t.into(), u.into(), v.into()]
 }
 
-/// [`settle`] in single precision.
+/// Four numbers on each axis, in double precision.
+type Half<S> = [f64x4<S>; 3];
+
+#[inline(always)]
+fn halves<S: Lanes>([x, y, z]: Corner<S>) -> [Half<S>; 2] {
+    let ((x_low, x_high), (y_low, y_high), (z_low, z_high)) = (x.widen(), y.widen(), z.widen());
+    [[x_low, y_low, z_low], [x_high, y_high, z_high]]
+}
+
+#[inline(always)]
+fn settle_half<S: Lanes>(simd: S, [a, b, c]: [Half<S>; 3]) -> [f64x4<S>; 3] {
+    let [e, f, g] = edges([[a[0], a[1]], [b[0], b[1]], [c[0], c[1]]]);
+    let determinant = e + f + g;
+    let zero = f64x4::splat(simd, 0.0);
+    let misses = e.simd_lt(zero) | f.simd_lt(zero) | g.simd_lt(zero);
+    let outside = misses & (e.simd_gt(zero) | f.simd_gt(zero) | g.simd_gt(zero));
+    let has_area = determinant.abs().simd_lt(f64::INFINITY) & !determinant.simd_eq(zero);
+    let inverse = f64x4::splat(simd, 1.0) / determinant;
+    let (e, f, g) = (e * inverse, f * inverse, g * inverse);
+    let t = e * a[2] + f * b[2] + g * c[2];
+    [(has_area & !outside).select(t, f64x4::splat(simd, f64::NAN)), f, g]
+}
+
+/// [`settle`] in single precision, for all lanes.
 #[inline(always)]
 pub(super) fn settle_fast<S: Lanes>(simd: S, [a, b, c]: [Corner<S>; 3]) -> [[f32; 8]; 3] {
     let [e, f, g] = edges([[a[0], a[1]], [b[0], b[1]], [c[0], c[1]]]);

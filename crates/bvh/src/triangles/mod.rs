@@ -2,6 +2,7 @@
 
 mod build;
 mod clip;
+mod common_origin;
 mod filter;
 mod in_flight;
 mod many;
@@ -10,9 +11,10 @@ mod moving;
 mod one;
 mod query;
 
-use crate::lanes::{Lanes, bits};
+use crate::lanes::Lanes;
+use crate::node::Bounds;
 use crate::pages::Pages;
-use crate::slabs::{Bundle, Slabs};
+use crate::slabs::Slabs;
 use crate::triangle::{Shear, TriangleTest};
 use crate::{BuildStats, Bvh, RefitError};
 use bytemuck::{Pod, Zeroable};
@@ -231,9 +233,9 @@ impl Block {
         [simd.load(&axes[x]), simd.load(&axes[y]), simd.load(&axes[z])]
     }
 
-    /// Triangles (bit per lane) whose boxes any ray of the bundle may meet.
+    /// The boxes of the triangles, as large as those that the tree was built from, or larger.
     #[inline(always)]
-    fn test_bundle<S: Lanes>(&self, simd: S, bundle: &Bundle) -> u32 {
+    fn boxes<S: Lanes>(&self, simd: S) -> Bounds {
         let [a, b, c] = &self.vertices;
         let (mut low, mut high) = ([simd.splat(0.0); 3], [simd.splat(0.0); 3]);
         let mut size = simd.splat(0.0);
@@ -242,18 +244,13 @@ impl Block {
             (low[axis], high[axis]) = (simd.least(a, simd.least(b, c)), simd.most(a, simd.most(b, c)));
             size = simd.most(high[axis] - low[axis], size);
         }
-        let mut enter = simd.splat(bundle.t_min);
-        let mut leave = simd.splat(bundle.t_max);
+        let mut boxes = [[[0.0; LANES]; 2]; 3];
         for axis in 0..3 {
-            let (low, high) = (low[axis], high[axis]);
             // As much as the boxes of single triangles are grown, and more: along each axis by the largest side.
-            let room = (size + low.abs() + high.abs()) * GROWTH;
-            let (low, high) = (low - room, high + room);
-            let (near, far) = if bundle.side[axis] == 0 { (low, high) } else { (high, low) };
-            enter = simd.most((near - bundle.near_origin[axis]) * bundle.near_inverse[axis], enter);
-            leave = simd.least((far - bundle.far_origin[axis]) * bundle.far_inverse[axis], leave);
+            let room = (size + low[axis].abs() + high[axis].abs()) * GROWTH;
+            boxes[axis] = [(low[axis] - room).into(), (high[axis] + room).into()];
         }
-        bits(enter.simd_le(leave))
+        boxes
     }
 
     /// The corners of one lane, axes in the order of the shear.

@@ -120,10 +120,12 @@ impl<F: Filter> Query<'_, F> {
 
     #[inline(always)]
     fn closest_groups<S: Lanes>(&self, simd: S, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
-        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, *self));
+        let mut stack = Stack::new();
+        let mut group = Group::new();
+        let mut many = Many::new(simd, *self);
         for (number, (rays, hits)) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)).enumerate() {
             let first = number * GROUP;
-            if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && many.fill(first, rays, &group) {
+            if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && many.fill(first, &group) {
                 self.tree.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
                 many.write_hits(rays, hits);
             } else {
@@ -135,14 +137,16 @@ impl<F: Filter> Query<'_, F> {
     /// Rays that are no group of 32 are tried as packets of eight, and then alone.
     #[inline(always)]
     fn any_groups<S: Lanes>(&self, simd: S, rays: &[Ray], occluded: &mut [bool]) {
-        let (mut stack, mut group, mut many) = (Stack::new(), Group::new(), Many::new(simd, *self));
+        let mut stack = Stack::new();
+        let mut group = Group::new();
+        let mut many = Many::new(simd, *self);
         for (number, (rays, occluded)) in rays.chunks(GROUP).zip(occluded.chunks_mut(GROUP)).enumerate() {
             let first = number * GROUP;
-            let whole = group.fill(simd, rays) && many.fill(first, rays, &group);
+            let whole = group.fill(simd, rays) && many.fill(first, &group);
             let size = if whole { GROUP } else { PACKET };
             for (number, (rays, occluded)) in rays.chunks(size).zip(occluded.chunks_mut(size)).enumerate() {
                 let first = first + number * size;
-                let together = whole || group.fill(simd, rays) && many.fill(first, rays, &group);
+                let together = whole || group.fill(simd, rays) && many.fill(first, &group);
                 if !together {
                     self.any_each(simd, &mut stack, first, rays, occluded);
                     continue;

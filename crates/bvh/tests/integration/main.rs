@@ -14,6 +14,7 @@ mod common;
 mod degenerate;
 mod moving;
 mod oracle;
+mod pinhole;
 mod refit;
 mod scenes;
 mod soups;

@@ -91,7 +91,7 @@ impl Phong {
         std::f32::consts::PI / self.albedo_scale
     }
 
-    /// The same surface for light that is followed path by path: `diffuse` (times `albedo_scale`) is Lambert's albedo,
+    /// Adds the lobes of the same surface for light that is followed path by path: `diffuse` (times `albedo_scale`) is Lambert's albedo,
     /// the highlight a lobe of the same exponent that gives back `specular` head on, mirror and transparency are deltas.
     /// A glossy mirror is a rough one of about the same spread, glossy or blurry glass with `fresnel` rough glass; blurry
     /// windows without are sharp. z is the side of the viewer, who is
@@ -99,7 +99,7 @@ impl Phong {
     ///
     /// The classic model may give back more light than there was; then the whole is dimmed so that no channel's albedo
     /// is above 1.
-    pub fn bsdf(&self, outside: bool) -> Bsdf {
+    pub fn add_lobes(&self, outside: bool, bsdf: &mut Bsdf) {
         let albedo = self.diffuse * self.albedo_scale;
         let rays = self.mirror + self.transparency;
         let rays = if self.fresnel { larger(self.mirror, self.transparency) } else { rays };
@@ -111,7 +111,6 @@ impl Phong {
             ior: if outside { self.ior } else { 1.0 / self.ior },
             fresnel: self.fresnel,
         };
-        let mut bsdf = Bsdf::new();
         if !albedo.is_black() {
             bsdf.push_scaled(Lambert { albedo }, weight);
         }
@@ -124,7 +123,7 @@ impl Phong {
         if spread > 0.0 && self.fresnel {
             let glass = Dielectric::new(whitted.ior, alpha(spread)).tinted(self.mirror, self.transparency);
             bsdf.push_scaled(glass, weight);
-            return bsdf;
+            return;
         }
         if self.glossy.half_angle_radians > 0.0 && !self.mirror.is_black() {
             let fresnel = Fresnel::Schlick { f0: self.mirror, f90: self.mirror };
@@ -134,7 +133,6 @@ impl Phong {
         if !(whitted.mirror.is_black() && whitted.transparency.is_black()) {
             bsdf.push_scaled(whitted, weight);
         }
-        bsdf
     }
 }
 

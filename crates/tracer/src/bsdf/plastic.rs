@@ -41,15 +41,19 @@ impl Default for Plastic {
 
 impl From<Plastic> for Bsdf {
     fn from(plastic: Plastic) -> Self {
-        let coat =
-            Conductor::compensated(Fresnel::Dielectric { ior: plastic.ior, color: plastic.reflection }, plastic.alpha);
-        let within = 1.0 - (1.0 - fresnel::dielectric_average(plastic.ior)) / (plastic.ior * plastic.ior);
+        Self::with_lobes(|bsdf| plastic.add_lobes(bsdf))
+    }
+}
+
+impl Plastic {
+    /// Adds the coat and the body under it to `bsdf`.
+    pub fn add_lobes(&self, bsdf: &mut Bsdf) {
+        let coat = Conductor::compensated(Fresnel::Dielectric { ior: self.ior, color: self.reflection }, self.alpha);
+        let within = 1.0 - (1.0 - fresnel::dielectric_average(self.ior)) / (self.ior * self.ior);
         let again = |a: f32| a * (1.0 - within) / (1.0 - a * within);
-        let albedo = if plastic.nonlinear { plastic.albedo.map(again) } else { plastic.albedo };
-        let mut bsdf = Self::new();
+        let albedo = if self.nonlinear { self.albedo.map(again) } else { self.albedo };
         bsdf.push_layer(coat, 1.0);
-        bsdf.push_matt(albedo, plastic.body_roughness, 1.0);
-        bsdf
+        bsdf.push_matt(albedo, self.body_roughness, 1.0);
     }
 }
 

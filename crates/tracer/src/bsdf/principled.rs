@@ -87,10 +87,9 @@ impl Default for Principled {
 }
 
 impl Principled {
-    /// The lobes. `relative_ior` is the index of refraction below the surface (-z) over that above, for glass that is
+    /// Adds the lobes to `bsdf`. `relative_ior` is the index of refraction below the surface (-z) over that above, for glass that is
     /// not thin-walled: the material's `ior` where air is above.
-    pub fn bsdf(&self, relative_ior: f32) -> Bsdf {
-        let mut bsdf = Bsdf::new();
+    pub fn add_lobes(&self, relative_ior: f32, bsdf: &mut Bsdf) {
         if self.clearcoat > 0.0 {
             let fresnel = Fresnel::Dielectric { ior: self.clearcoat_ior, color: Rgb::WHITE };
             let alpha = self.clearcoat_roughness * self.clearcoat_roughness;
@@ -106,12 +105,11 @@ impl Principled {
             bsdf.push_scaled(self.mirror(fresnel, self.alpha()), metal);
         }
         if glass > 0.0 {
-            self.push_glass(&mut bsdf, relative_ior, glass);
+            self.push_glass(bsdf, relative_ior, glass);
         }
         if plastic > 0.0 {
-            self.push_plastic(&mut bsdf, plastic);
+            self.push_plastic(bsdf, plastic);
         }
-        bsdf
     }
 
     /// Alpha along x and y, by KHR_materials_anisotropy.
@@ -186,7 +184,7 @@ mod tests {
             single_scattering: true,
             ..Principled::default()
         };
-        let value = red.bsdf(1.5).eval(Vec3::Z, Vec3::Z);
+        let value = Bsdf::with_lobes(|bsdf| red.add_lobes(1.5, bsdf)).eval(Vec3::Z, Vec3::Z);
         let alpha = 0.36f32;
         let highlight = 0.04 / (4.0 * std::f32::consts::PI * alpha * alpha);
         assert!(close(value.b, highlight, 1e-4), "{value:?}");
@@ -198,24 +196,31 @@ mod tests {
     fn metal_is_its_colour_and_extensions_reach_their_lobes() {
         let gold =
             Principled { base_color: Rgb::new(1.0, 0.7, 0.3), metallic: 1.0, roughness: 0.0, ..Principled::default() };
-        let deltas = gold.bsdf(1.5).deltas(Vec3::Z);
+        let deltas = Bsdf::with_lobes(|bsdf| gold.add_lobes(1.5, bsdf)).deltas(Vec3::Z);
         assert!(deltas.len() == 1 && close(deltas[0].weight.g, 0.7, 1e-6), "{deltas:?}");
         let brushed = Principled { roughness: 0.5, anisotropy: 0.6, ..gold };
         assert!(close(brushed.alpha().x, 0.25 + 0.75 * 0.36, 1e-6) && brushed.alpha().y == 0.25);
         // Specular 0 is matt; transmission 1 lets through what it does not mirror, in its colour.
         let matt = Principled { specular: 0.0, base_color: Rgb::splat(0.5), ..Principled::default() };
         let (wo, wi) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.8, 0.6));
-        assert!(close(matt.bsdf(1.5).eval(wo, wi).r, 0.5 * 0.6 / std::f32::consts::PI, 1e-6));
+        assert!(close(
+            Bsdf::with_lobes(|bsdf| matt.add_lobes(1.5, bsdf)).eval(wo, wi).r,
+            0.5 * 0.6 / std::f32::consts::PI,
+            1e-6
+        ));
         let water = Principled {
             transmission: 1.0,
             roughness: 0.0,
             base_color: Rgb::new(0.2, 0.8, 1.0),
             ..Principled::default()
         };
-        let deltas = water.bsdf(1.333).deltas(Vec3::Z);
+        let deltas = Bsdf::with_lobes(|bsdf| water.add_lobes(1.333, bsdf)).deltas(Vec3::Z);
         let through = deltas.iter().find(|d| d.is_transmitted(Vec3::Z)).unwrap();
         assert!(close(through.weight.g * fun::powi(1.333, 2), 0.8 * (1.0 - 0.020_37), 1e-4), "{deltas:?}");
         let coated = Principled { clearcoat: 1.0, ..matt };
-        assert!(coated.bsdf(1.5).has_specular() && !coated.bsdf(1.5).is_specular());
+        assert!(
+            Bsdf::with_lobes(|bsdf| coated.add_lobes(1.5, bsdf)).has_specular()
+                && !Bsdf::with_lobes(|bsdf| coated.add_lobes(1.5, bsdf)).is_specular()
+        );
     }
 }

@@ -72,11 +72,12 @@ impl Bsdf {
         Self { lobes: ArrayVec::new_const() }
     }
 
-    /// Becomes another one. Only the lobes that are there are copied.
+    /// The lobes that `add` pushes.
     #[inline]
-    pub fn set(&mut self, other: &Self) {
-        self.lobes.clear();
-        self.lobes.extend(other.lobes.iter().copied());
+    pub fn with_lobes(add: impl FnOnce(&mut Self)) -> Self {
+        let mut bsdf = Self::new();
+        add(&mut bsdf);
+        bsdf
     }
 
     /// Adds a lobe. Who adds several side by side sees to it that they give no more light than there was. More than

@@ -68,17 +68,17 @@ impl From<Physical> for Compiled {
 }
 
 impl Physical {
-    /// How it scatters at a point.
+    /// Adds the lobes at a point to `bsdf`: in place, for a scattering function is large to return.
     #[inline]
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         match self {
-            Self::Diffuse(diffuse) => diffuse.bsdf(textures, view),
-            Self::Conductor(conductor) => conductor.bsdf(textures, view),
-            Self::Dielectric(dielectric) => dielectric.bsdf(textures, view),
-            Self::Plastic(plastic) => plastic.bsdf(textures, view),
-            Self::Velvet(velvet) => velvet.bsdf(textures, view),
-            Self::Translucent(translucent) => translucent.bsdf(textures, view),
-            Self::Principled(principled) => principled.bsdf(textures, view),
+            Self::Diffuse(diffuse) => diffuse.add_lobes(textures, view, bsdf),
+            Self::Conductor(conductor) => conductor.add_lobes(textures, view, bsdf),
+            Self::Dielectric(dielectric) => dielectric.add_lobes(textures, view, bsdf),
+            Self::Plastic(plastic) => plastic.add_lobes(textures, view, bsdf),
+            Self::Velvet(velvet) => velvet.add_lobes(textures, view, bsdf),
+            Self::Translucent(translucent) => translucent.add_lobes(textures, view, bsdf),
+            Self::Principled(principled) => principled.add_lobes(textures, view, bsdf),
         }
     }
 

@@ -155,12 +155,12 @@ impl Conductor {
 }
 
 impl CompiledConductor {
-    /// How it scatters at a point.
+    /// Adds the lobes at a point to `bsdf`.
     #[inline]
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         match self.fixed {
-            Some(fixed) => fixed.into(),
-            None => self.at(textures, &view.lookup()).into(),
+            Some(fixed) => bsdf.push(fixed),
+            None => bsdf.push(self.at(textures, &view.lookup())),
         }
     }
 

@@ -99,26 +99,20 @@ impl Material for Dielectric {
 }
 
 impl CompiledDielectric {
-    /// How it scatters at a point.
+    /// Adds the lobes at a point to `bsdf`.
     #[inline]
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
-        if self.is_textured() {
-            self.at(textures, &view.lookup(), view)
-        } else {
-            self.at(textures, &Lookup::default(), view)
-        }
-    }
-
-    fn at(&self, textures: &TextureTable, at: &Lookup, view: &View) -> Bsdf {
-        let alpha = self.roughness.alpha(textures, at);
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+        let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
+        let alpha = self.roughness.alpha(textures, &at);
         let (reflection, transmission) =
-            (share(textures, &self.reflection, at), share(textures, &self.transmission, at));
+            (share(textures, &self.reflection, &at), share(textures, &self.transmission, &at));
         if self.interior.is_none() {
             let thin = if self.compensated { ThinDielectric::compensated } else { ThinDielectric::new };
-            return thin(self.ior, alpha).tinted(reflection, transmission).into();
+            bsdf.push(thin(self.ior, alpha).tinted(reflection, transmission));
+            return;
         }
         let border = if self.compensated { DielectricLobe::compensated } else { DielectricLobe::new };
-        border(self.ior / view.around_ior, alpha).tinted(reflection, transmission).into()
+        bsdf.push(border(self.ior / view.around_ior, alpha).tinted(reflection, transmission));
     }
 
     /// Whether it differs from place to place.

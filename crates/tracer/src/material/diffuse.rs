@@ -51,15 +51,14 @@ impl Material for Diffuse {
 }
 
 impl CompiledDiffuse {
-    /// How it scatters at a point.
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    /// Adds the lobes at a point to `bsdf`.
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         if let (Slot::Value(albedo), Slot::Value(0.0)) = (self.reflectance, self.roughness) {
-            return Lambert { albedo }.into();
+            bsdf.push(Lambert { albedo });
+            return;
         }
         let at = view.lookup();
-        let mut bsdf = Bsdf::new();
         bsdf.push_matt(share(textures, &self.reflectance, &at), fraction(textures, &self.roughness, &at), 1.0);
-        bsdf
     }
 
     /// Whether it differs from place to place.

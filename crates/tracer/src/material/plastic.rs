@@ -90,8 +90,8 @@ impl Material for Plastic {
 }
 
 impl CompiledPlastic {
-    /// How it scatters at a point.
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    /// Adds the lobes at a point to `bsdf`.
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = view.lookup();
         PlasticLobes {
             albedo: share(textures, &self.reflectance, &at),
@@ -102,7 +102,7 @@ impl CompiledPlastic {
             reflection: share(textures, &self.reflection, &at),
             nonlinear: self.nonlinear,
         }
-        .into()
+        .add_lobes(bsdf);
     }
 
     /// Whether it differs from place to place.

@@ -290,15 +290,15 @@ impl Slots {
 }
 
 impl CompiledPrincipled {
-    /// How it scatters at a point.
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    /// Adds the lobes at a point to `bsdf`.
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let relative_ior = self.fixed.ior / view.around_ior;
         if !self.is_textured() {
-            return self.fixed.bsdf(relative_ior);
+            return self.fixed.add_lobes(relative_ior, bsdf);
         }
         let mut lobes = self.fixed;
         self.slots.fill(&mut lobes, textures, &view.lookup());
-        lobes.bsdf(relative_ior)
+        lobes.add_lobes(relative_ior, bsdf);
     }
 
     /// Whether light may come through.

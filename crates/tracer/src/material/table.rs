@@ -198,7 +198,7 @@ impl MaterialTable {
             normal = if is_mapped { outwards } else { view.normal };
         }
         shade.frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
-        shade.bsdf.set(&physical.bsdf(&self.textures, view));
+        physical.add_lobes(&self.textures, view, &mut shade.bsdf);
         shade.transmissive = physical.is_transmissive();
     }
 
@@ -206,7 +206,7 @@ impl MaterialTable {
     fn classic(lobe: &PhongLobe, view: &View, shade: &mut Shade) {
         shade.frame = Frame::around(facing_normal(view, view.normal));
         shade.emission += lobe.emission;
-        shade.bsdf.set(&lobe.bsdf(view.is_outside()));
+        lobe.add_lobes(view.is_outside(), &mut shade.bsdf);
         shade.lamp_scale = lobe.lamp_scale();
     }
 

@@ -60,12 +60,12 @@ impl Material for Translucent {
 }
 
 impl CompiledTranslucent {
-    /// How it scatters at a point.
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    /// Adds the lobes at a point to `bsdf`.
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
         let (back, through) = (share(textures, &self.reflectance, &at), share(textures, &self.transmittance, &at));
         let scale = (back + through).map(|both| 1.0 / both.max(1.0));
-        DiffuseTransmission { reflectance: back * scale, transmittance: through * scale }.into()
+        bsdf.push(DiffuseTransmission { reflectance: back * scale, transmittance: through * scale });
     }
 
     /// Whether it differs from place to place.

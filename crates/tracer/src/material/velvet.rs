@@ -68,17 +68,15 @@ impl Material for Velvet {
 }
 
 impl CompiledVelvet {
-    /// How it scatters at a point.
-    pub fn bsdf(&self, textures: &TextureTable, view: &View) -> Bsdf {
+    /// Adds the lobes at a point to `bsdf`.
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = view.lookup();
         let roughness = fraction(textures, &self.sheen_roughness, &at);
         let ground = share(textures, &self.reflectance, &at);
-        let mut bsdf = Bsdf::new();
         bsdf.push_layer(Sheen::new(share(textures, &self.sheen_color, &at), roughness * roughness), 1.0);
         if !ground.is_black() {
             bsdf.push_matt(ground, fraction(textures, &self.roughness, &at), 1.0);
         }
-        bsdf
     }
 
     /// Whether it differs from place to place.

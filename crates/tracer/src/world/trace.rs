@@ -51,7 +51,7 @@ impl Leaf for Nearest<'_> {
     }
 
     #[inline]
-    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], range: Range<u32>) {
+    fn closest_many(&mut self, first: usize, active: u32, rays: &mut [Ray], range: Range<u32>) -> bool {
         let level = self.level;
         for item in &level.items[range.start as usize..range.end as usize] {
             match *item {
@@ -66,6 +66,7 @@ impl Leaf for Nearest<'_> {
                 }
             }
         }
+        true
     }
 
     #[inline]

@@ -187,13 +187,19 @@ fn classics() -> Vec<Example> {
         Phong { fresnel: false, mirror: Rgb::splat(0.2), transparency: Rgb::splat(0.8), specular: Rgb::BLACK, ..glass };
     let glossy = Phong { mirror: Rgb::splat(0.9), glossy: Cone { half_angle_radians: 0.9, rays: 1 }, ..Phong::BLACK };
     vec![
-        Example::new("shiny", shiny.bsdf(true)),
-        Example::new("matt highlight", Phong { shininess: 0.0, ..shiny }.bsdf(true)),
-        Example::new("overbright", overbright.bsdf(true)),
-        Example::new("classic glass", glass.bsdf(true)),
-        Example::new("classic glass from within", glass.bsdf(false)),
-        Example::new("classic window", window.bsdf(true)).both_sides().white(1e-4),
-        Example::new("glossy", glossy.bsdf(true)),
-        Example::new("glossy glass", Phong { glossy: glossy.glossy, ..glass }.bsdf(false)),
+        Example::new("shiny", Bsdf::with_lobes(|bsdf| shiny.add_lobes(true, bsdf))),
+        Example::new(
+            "matt highlight",
+            Bsdf::with_lobes(|bsdf| Phong { shininess: 0.0, ..shiny }.add_lobes(true, bsdf)),
+        ),
+        Example::new("overbright", Bsdf::with_lobes(|bsdf| overbright.add_lobes(true, bsdf))),
+        Example::new("classic glass", Bsdf::with_lobes(|bsdf| glass.add_lobes(true, bsdf))),
+        Example::new("classic glass from within", Bsdf::with_lobes(|bsdf| glass.add_lobes(false, bsdf))),
+        Example::new("classic window", Bsdf::with_lobes(|bsdf| window.add_lobes(true, bsdf))).both_sides().white(1e-4),
+        Example::new("glossy", Bsdf::with_lobes(|bsdf| glossy.add_lobes(true, bsdf))),
+        Example::new(
+            "glossy glass",
+            Bsdf::with_lobes(|bsdf| Phong { glossy: glossy.glossy, ..glass }.add_lobes(false, bsdf)),
+        ),
     ]
 }

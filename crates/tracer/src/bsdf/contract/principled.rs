@@ -2,8 +2,12 @@
 
 use super::examples::Example;
 use super::{MORE, furnace, views};
-use crate::bsdf::Principled;
+use crate::bsdf::{Bsdf, Principled};
 use juggler_math::Rgb;
+
+fn lobes(numbers: &Principled, relative_ior: f32) -> Bsdf {
+    Bsdf::with_lobes(|bsdf| numbers.add_lobes(relative_ior, bsdf))
+}
 
 pub(super) fn examples() -> Vec<Example> {
     let white = Principled::default();
@@ -30,13 +34,15 @@ pub(super) fn examples() -> Vec<Example> {
         ),
     ];
     let mut all: Vec<Example> = vec![];
-    all.extend(opaque.map(|(name, numbers)| Example::new(format!("principled {name}"), numbers.bsdf(1.5))));
-    all.extend(clear.map(|(name, numbers)| Example::new(format!("principled {name}"), numbers.bsdf(1.4)).both_sides()));
+    all.extend(opaque.map(|(name, numbers)| Example::new(format!("principled {name}"), lobes(&numbers, 1.5))));
+    all.extend(
+        clear.map(|(name, numbers)| Example::new(format!("principled {name}"), lobes(&numbers, 1.4)).both_sides()),
+    );
     all.extend(whites());
     let glass = Principled { transmission: 1.0, ..white };
-    all.push(Example::new("principled white glass", glass.bsdf(1.5)).both_sides().white(0.02));
+    all.push(Example::new("principled white glass", lobes(&glass, 1.5)).both_sides().white(0.02));
     let pane = Principled { thin_walled: true, ..glass };
-    all.push(Example::new("principled white pane", pane.bsdf(1.5)).both_sides().white(0.02));
+    all.push(Example::new("principled white pane", lobes(&pane, 1.5)).both_sides().white(0.02));
     all
 }
 
@@ -55,7 +61,7 @@ fn whites() -> Vec<Example> {
         ("varnished metal", Principled { clearcoat: 1.0, metallic: 1.0, ..white }, 0.12),
     ];
     let named = |(name, numbers, within): (&str, Principled, f32)| {
-        Example::new(format!("principled white {name}"), numbers.bsdf(1.5)).white(within)
+        Example::new(format!("principled white {name}"), lobes(&numbers, 1.5)).white(within)
     };
     whites.map(named).into()
 }
@@ -90,7 +96,7 @@ fn white_ones_are_white_at_any_roughness() {
     for (name, base, least) in white_ones() {
         for roughness in [0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 1.0] {
             let numbers = Principled { roughness, ..base };
-            let bsdf = numbers.bsdf(1.5);
+            let bsdf = lobes(&numbers, 1.5);
             for wo in views(numbers.transmission == 1.0) {
                 let energy = furnace(&bsdf, wo, 64);
                 let near = energy.to_array().iter().all(|share| (least..=1.0 + MORE).contains(share));
