@@ -15,7 +15,7 @@
 //! The test only refuses: the few triangles that pass are tested anew, exactly. Let `u` be half an ulp of 1, `m` the
 //! largest depth of the triangle and `r` the largest distance of its corners from any ray's axis. A coordinate here and
 //! in the exact test differ by at most `u (2 m + 3 r)`, so edge functions by `4 r` times that, and rounding here adds
-//! `20 u r²`: together `u (8 m r + 32 r²)`. Four times as much is allowed for.
+//! `20 u r²`, with fused multiplication or without: together `u (8 m r + 32 r²)`. Four times as much is allowed for.
 
 use super::meet::Corner;
 use super::{Block, LANES};
