@@ -9,9 +9,9 @@ use super::filter::Filter;
 use super::one::One;
 use super::query::Query;
 use crate::Leaf;
-use crate::lanes::{Lanes, prefetch};
+use crate::lanes::Lanes;
 use crate::node::Child;
-use crate::single::{first, nearest, next_below};
+use crate::single::{Boxes, first, nearest, next_below};
 use crate::slabs::{Slabs, cull_distance};
 use crate::stack::Stack;
 use arrayvec::ArrayVec;
@@ -161,11 +161,7 @@ impl<'a, F: Filter> Query<'a, F> {
         };
         let Some(child) = next else { return false };
         flight.current = child;
-        if child.is_leaf() {
-            prefetch(&self.tree.blocks, child.items().start as usize);
-        } else {
-            prefetch(&self.tree.bvh.nodes, child.0 as usize);
-        }
+        self.tree.memory().prefetch(child);
         true
     }
 }

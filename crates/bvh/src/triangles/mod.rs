@@ -11,15 +11,16 @@ mod moving;
 mod one;
 mod query;
 
-use crate::lanes::Lanes;
-use crate::node::Bounds;
+use crate::lanes::{Lanes, prefetch};
+use crate::node::{Bounds, Child, Node};
 use crate::pages::Pages;
+use crate::single::Boxes;
 use crate::slabs::Slabs;
 use crate::triangle::{Shear, TriangleTest};
 use crate::{BuildStats, Bvh, RefitError};
 use bytemuck::{Pod, Zeroable};
-use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
+use fearless_simd::{dispatch, f32x8};
 use filter::{All, Where};
 use juggler_math::{Aabb, Ray, Vec3};
 use meet::Corner;
@@ -145,6 +146,11 @@ impl TriangleBvh {
         self.all().any_batch(rays, occluded);
     }
 
+    #[inline(always)]
+    fn memory(&self) -> Memory<'_> {
+        Memory { nodes: &self.bvh.nodes, blocks: &self.blocks }
+    }
+
     fn all(&self) -> Query<'_, All> {
         Query { tree: self, filter: All }
     }
@@ -195,6 +201,34 @@ impl TriangleBvh {
     /// Bytes of memory that the tree and its triangles hold.
     pub fn bytes(&self) -> usize {
         self.bvh.bytes() + self.blocks.bytes()
+    }
+}
+
+/// The memory of a tree.
+#[derive(Clone, Copy)]
+struct Memory<'a> {
+    nodes: &'a [Node],
+    blocks: &'a [Block],
+}
+
+impl Boxes for Memory<'_> {
+    #[inline(always)]
+    fn node(&self, number: usize) -> &Node {
+        &self.nodes[number]
+    }
+
+    #[inline(always)]
+    fn test<S: Lanes>(&self, simd: S, number: usize, slabs: &Slabs) -> (u32, f32x8<S>) {
+        self.nodes[number].test(simd, slabs)
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, child: Child) {
+        if child.is_leaf() {
+            prefetch(self.blocks, child.items().start as usize);
+        } else {
+            prefetch(self.nodes, child.0 as usize);
+        }
     }
 }
 

@@ -91,7 +91,7 @@ impl<F: Filter> Query<'_, F> {
         let mut one = One::new(simd, *self, ray, &slabs);
         closest_below(
             simd,
-            &*self.tree.bvh.nodes,
+            self.tree.memory(),
             Child::ROOT,
             Stack::new().view(),
             (number, &mut { *ray }),
@@ -105,7 +105,7 @@ impl<F: Filter> Query<'_, F> {
     fn any_one<S: Lanes>(&self, simd: S, number: usize, ray: &Ray) -> bool {
         let slabs = Slabs::of_ray(simd, ray);
         let mut one = One::new(simd, *self, ray, &slabs);
-        any_below(simd, &*self.tree.bvh.nodes, Child::ROOT, Stack::new().view(), (number, ray), &slabs, &mut one)
+        any_below(simd, self.tree.memory(), Child::ROOT, Stack::new().view(), (number, ray), &slabs, &mut one)
     }
 
     pub fn closest_packet(&self, rays: &mut [Ray], hits: &mut [Option<TriangleHit>]) {
@@ -193,7 +193,7 @@ impl<F: Filter> Query<'_, F> {
             let slabs = Slabs::of_ray(simd, ray);
             let mut one = One::new(simd, *self, ray, &slabs);
             let ray = (first + number, ray);
-            closest_below(simd, &*self.tree.bvh.nodes, Child::ROOT, stack.view(), ray, slabs, &mut one);
+            closest_below(simd, self.tree.memory(), Child::ROOT, stack.view(), ray, slabs, &mut one);
             *hit = one.hit;
         }
     }
@@ -205,7 +205,7 @@ impl<F: Filter> Query<'_, F> {
             let slabs = Slabs::of_ray(simd, ray);
             let mut one = One::new(simd, *self, ray, &slabs);
             let ray = (first + number, ray);
-            *occluded = any_below(simd, &*self.tree.bvh.nodes, Child::ROOT, stack.view(), ray, &slabs, &mut one);
+            *occluded = any_below(simd, self.tree.memory(), Child::ROOT, stack.view(), ray, &slabs, &mut one);
         }
     }
 }
