@@ -8,6 +8,9 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use juggler_math::Ray;
 
+/// The numbers of a ray's row that must be finite.
+const ORIGIN_AND_DIRECTION: u32 = 0x3f;
+
 /// Up to eight rays of one octant, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RayLanes {
@@ -30,7 +33,7 @@ pub(crate) struct RayLanes {
 
 impl RayLanes {
     /// Takes up to eight rays in, in place, and says what their extremes are; lanes without a ray meet nothing.
-    /// `None` where the directions do not share an octant or a ray may start before its origin.
+    /// `None` where the directions do not share an octant, or a ray may start before its origin, or is infinite.
     #[inline(always)]
     pub fn fill<S: Lanes>(&mut self, simd: S, rays: &[Ray]) -> Option<Extent> {
         let first = row(simd, rays.first()?);
@@ -38,12 +41,7 @@ impl RayLanes {
         for (row, ray) in rows.iter_mut().zip(rays) {
             *row = self::row(simd, ray);
         }
-        let (mut low, mut high) = (first, first);
-        for row in rows {
-            low = simd.least(row, low);
-            high = simd.most(row, high);
-        }
-        let (low, high): ([f32; WIDTH], [f32; WIDTH]) = (low.into(), high.into());
+        let (low, high) = extremes(simd, &rows)?;
         let [ox, oy, oz, dx, dy, dz, t_min, t_max] = transposed(rows);
         self.signs = 0;
         for axis in 0..3 {
@@ -114,6 +112,22 @@ impl RayLanes {
 fn row<S: Lanes>(simd: S, ray: &Ray) -> f32x8<S> {
     let (o, d) = (ray.origin, ray.direction);
     [o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max].simd_into(simd)
+}
+
+/// The least and the largest of each number; `None` where a ray is infinite. (Undefined rays are none of them, but the
+/// first.)
+#[inline(always)]
+fn extremes<S: Lanes>(simd: S, rows: &[f32x8<S>; WIDTH]) -> Option<([f32; WIDTH], [f32; WIDTH])> {
+    let (mut low, mut high) = (rows[0], rows[0]);
+    for row in rows {
+        low = simd.least(*row, low);
+        high = simd.most(*row, high);
+    }
+    let is_finite = low.abs().simd_lt(f32::INFINITY) & high.abs().simd_lt(f32::INFINITY);
+    (bits(is_finite) & ORIGIN_AND_DIRECTION == ORIGIN_AND_DIRECTION).then(
+        #[inline(always)]
+        || (low.into(), high.into()),
+    )
 }
 
 /// Rows become columns: three perfect shuffles.

@@ -100,7 +100,8 @@ impl Slabs {
         let direction: f32x4<S> = [d.x, d.y, d.z, ray.t_min].simd_into(simd);
         let inverse = f32x4::splat(simd, 1.0) / direction;
         let offset = origin * inverse;
-        if offset.abs().simd_lt(f32::INFINITY).to_bitmask() & 7 != 7 {
+        let is_finite = offset.abs().simd_lt(f32::INFINITY) & direction.abs().simd_lt(f32::INFINITY);
+        if is_finite.to_bitmask() & 7 != 7 {
             *self = Self::parallel(*ray);
             return;
         }
@@ -121,11 +122,17 @@ impl Slabs {
     /// planes lie far behind or far ahead. The offset is exact, a power of two times the origin, and a plane
     /// through the origin counts as before and behind. Planes a step of rounding beside the origin lie 2^100 away:
     /// of such a ray hits beyond that (1.3e30 lengths of its direction) may be missed.
+    ///
+    /// A ray from nowhere, or to nowhere (not a number, infinite), meets nothing, not even empty boxes: their planes lie
+    /// at infinity, and zero times infinity would never end a traversal.
     #[cold]
     #[inline(never)]
     fn parallel(ray: Ray) -> Self {
         const FAR: f32 = (1u128 << 125) as f32;
         const PAD: f32 = (1u128 << 104) as f32;
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+            return Self { t_min: f32::INFINITY, t_max: f32::NEG_INFINITY, ..Self::default() };
+        }
         let mut slabs = Self {
             signs: 0,
             exact_inverse: [0.0; 4],

@@ -1,7 +1,7 @@
 //! Inputs at the edge: none, one, flat, coincident, empty, NaN, huge, tiny, and trees that want to be deep.
 
 use crate::common::{Keep, Random, check};
-use juggler_bvh::{Bvh, Quality, TriangleBvh, TriangleError};
+use juggler_bvh::{Bvh, Quality, TriangleBvh, TriangleError, simd_levels};
 use juggler_math::{Aabb, Ray, Vec3, vec3};
 
 #[test]
@@ -111,5 +111,35 @@ fn triangles_at_the_edge() {
         let error = TriangleBvh::build(&corners, &[[0, 1, 2], [0, 6, 1]], quality).unwrap_err();
         assert_eq!(error, TriangleError::NoSuchVertex { triangle: 1, vertex: 6, vertices: 6 });
         assert_eq!(error.to_string(), "triangle 1 names vertex 6, but there are 6 vertices");
+    }
+}
+
+/// Infinite and undefined rays: free slots of nodes hold boxes at infinity, which no such ray may enter for ever.
+#[test]
+fn rays_that_are_not_finite_hit_nothing() {
+    const VALUES: [f32; 4] = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 0.5];
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let tree = TriangleBvh::build(&corners, &[[0, 1, 2]; 30], Quality::Balanced).unwrap();
+    let good = Ray::new(vec3(0.2, 0.2, 1.0), vec3(0.0, 0.0, -1.0));
+    let numbers = (0..1 << 12).map(|n| std::array::from_fn(|i| VALUES[n >> (2 * i) & 3]));
+    let rays: Vec<Ray> = numbers
+        .map(|[ox, oy, oz, dx, dy, dz]: [f32; 6]| Ray::new(vec3(ox, oy, oz), vec3(dx, dy, dz)))
+        .filter(|ray| !(ray.origin.is_finite() && ray.direction.is_finite()))
+        .flat_map(|ray| [good, ray, good])
+        .collect();
+    for level in simd_levels() {
+        let tree = tree.clone().with_simd_level(level);
+        let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+        let alone: Vec<bool> = rays.iter().map(|ray| tree.closest(ray).is_some() && tree.any(ray)).collect();
+        assert!(alone.chunks(3).all(|hits| hits == [true, false, true]), "{level:?}");
+        for in_flight in [false, true] {
+            let tree = tree.clone().with_rays_in_flight(in_flight);
+            tree.closest_batch(&mut rays.clone(), &mut hits);
+            tree.any_batch(&rays, &mut occluded);
+            assert!(hits.iter().map(Option::is_some).eq(alone.iter().copied()) && occluded == alone, "{level:?}");
+        }
+        tree.closest_packet(&mut rays.clone(), &mut hits);
+        tree.any_packet(&rays, &mut occluded);
+        assert!(hits.iter().map(Option::is_some).eq(alone.iter().copied()) && occluded == alone, "{level:?}");
     }
 }
