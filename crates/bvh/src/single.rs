@@ -74,9 +74,9 @@ pub(crate) trait Boxes: Copy {
 
     /// Asks for a child's memory, which is read soon.
     ///
-    /// All children that a closest ray meets are asked for before the processor has to guess which is the nearest: 3 to
-    /// 25 % more incoherent rays a second where trees are larger than the second cache (Intel, 2 MiB), the same number
-    /// where they are not. (On Zen 4 it made no difference; rays that ask for any hit lost 3 to 5 %.)
+    /// All children that a ray meets are asked for, before the processor has to guess which is the nearest: 3 to 25 % more
+    /// incoherent rays a second where trees are larger than the second cache (Intel, 2 MiB), the same number where they
+    /// are not. (On Zen 4 it made no difference.)
     #[inline(always)]
     fn prefetch(&self, _child: Child) {}
 }
@@ -151,14 +151,23 @@ pub(crate) fn any_below<S: Lanes>(
         let slabs = reloaded(slabs);
         while !current.is_leaf() {
             let (mask, _) = boxes.test(simd, current.0 as usize, &slabs);
-            let next = first(boxes.node(current.0 as usize), mask, &mut stack);
-            let Some(next) = next.or_else(
+            let node = boxes.node(current.0 as usize);
+            let next = first(
+                mask,
+                &mut stack,
                 #[inline(always)]
-                || stack.pop().map(|entry| Child(entry as u32)),
-            ) else {
-                return false;
+                |slot| {
+                    boxes.prefetch(node.children[slot]);
+                    node.children[slot].0
+                },
+            );
+            current = match next {
+                Some(slot) => node.children[slot & 7],
+                None => match stack.pop() {
+                    Some(entry) => Child(entry as u32),
+                    None => return false,
+                },
             };
-            current = next;
         }
         if leaf.any(lane, ray, current.items()) {
             stack.clear();
@@ -177,19 +186,16 @@ fn reloaded(slabs: &Slabs) -> Slabs {
     *std::hint::black_box(slabs)
 }
 
-/// The largest of the children that are met, which the builder puts last: it most likely holds a hit. The others go
-/// onto the stack.
+/// The slot of the largest of the children that are met, which the builder puts last: it most likely holds a hit. The
+/// words of the others go onto the stack.
 #[inline(always)]
-pub(crate) fn first(node: &Node, mut mask: u32, stack: &mut StackView) -> Option<Child> {
-    if mask == 0 {
-        return None;
-    }
-    let last = mask.ilog2();
+pub(crate) fn first(mut mask: u32, stack: &mut StackView, word: impl Fn(usize) -> u32) -> Option<usize> {
+    let last = mask.checked_ilog2()?;
     mask ^= 1 << last;
     for slot in Bits(mask) {
-        stack.push(entry(0.0, node.children[slot].0));
+        stack.push(entry(0.0, word(slot)));
     }
-    Some(node.children[last as usize & 7])
+    Some(last as usize)
 }
 
 /// The next child on the stack that is entered before `t_max`.

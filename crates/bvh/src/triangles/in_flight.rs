@@ -147,7 +147,16 @@ impl<'a, F: Filter> Query<'a, F> {
         } else {
             let node = &self.tree.bvh.nodes[flight.current.0 as usize];
             let (mask, _) = node.test(simd, &flight.slabs);
-            first(node, mask, &mut flight.stack.view()).map(|child| child.0)
+            let largest = first(
+                mask,
+                &mut flight.stack.view(),
+                #[inline(always)]
+                |slot| node.children[slot].0,
+            );
+            largest.map(
+                #[inline(always)]
+                |slot| node.children[slot & 7].0,
+            )
         };
         if self.fetch(flight, next) { None } else { Some(false) }
     }
