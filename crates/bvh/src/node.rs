@@ -43,6 +43,12 @@ impl Child {
         self.0 & LEAF_BIT != 0
     }
 
+    /// The number of the node, or the position of the leaf's first item.
+    #[inline(always)]
+    pub fn place(self) -> usize {
+        (self.0 & FIRST_MASK) as usize
+    }
+
     /// Positions of a leaf's items.
     #[inline(always)]
     pub fn items(self) -> Range<u32> {

@@ -224,11 +224,13 @@ impl Boxes for Memory<'_> {
 
     #[inline(always)]
     fn prefetch(&self, child: Child) {
-        if child.is_leaf() {
-            prefetch(self.blocks, child.items().start as usize);
+        // Selections, for the processor cannot guess what a child is.
+        let (start, size) = if child.is_leaf() {
+            (self.blocks.as_ptr().cast::<u8>(), size_of::<Block>())
         } else {
-            prefetch(self.nodes, child.0 as usize);
-        }
+            (self.nodes.as_ptr().cast(), size_of::<Node>())
+        };
+        prefetch(start.wrapping_add(child.place() * size));
     }
 }
 
