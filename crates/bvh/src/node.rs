@@ -115,8 +115,8 @@ pub(crate) fn meet_bundle<S: Lanes>(simd: S, bounds: &Bounds, bundle: &Bundle) -
     let mut leave = simd.splat(bundle.t_max);
     for (axis, sides) in bounds.iter().enumerate() {
         let (near, far) = planes(simd, sides, bundle.side[axis]);
-        let near = (near - bundle.near_origin[axis]) * bundle.near_inverse[axis];
-        let far = (far - bundle.far_origin[axis]) * bundle.far_inverse[axis];
+        let near = (near - bundle.near[axis]) * bundle.near_inverse[3 + axis];
+        let far = (far - bundle.far[axis]) * bundle.far_inverse[3 + axis];
         // In this order, so that a NaN leaves the range as it is.
         enter = simd.most(near, enter);
         leave = simd.least(far, leave);

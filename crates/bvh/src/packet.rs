@@ -8,7 +8,7 @@
 use crate::lanes::{Bits, Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
-use crate::single::{any_below, closest_below, nearest};
+use crate::single::{Boxes, any_below, closest_below, nearest};
 use crate::slabs::{Bundle, Extent, Slabs};
 use crate::stack::{Stack, StackView, distance};
 use crate::{Bvh, Leaf};
@@ -46,14 +46,14 @@ impl Group {
         self.count = rays.len().div_ceil(PACKET).min(PACKETS);
         for (packet, rays) in self.packets.iter_mut().zip(rays.chunks(PACKET)) {
             let Some(extent) = packet.fill(simd, rays) else { return false };
-            packet.bundle = extent.bundle();
+            packet.bundle = extent.bundle(simd);
             match all.map_or(Some(extent), |all| all.union(simd, &extent)) {
                 Some(extent) => all = Some(extent),
                 None => return false,
             }
         }
         let Some(all) = all else { return false };
-        (self.bundle, self.extent) = (all.bundle(), all);
+        (self.bundle, self.extent) = (all.bundle(simd), all);
         true
     }
 
@@ -112,7 +112,7 @@ impl Bvh {
         for (number, rays) in rays.chunks_mut(GROUP).enumerate() {
             let first = number * GROUP;
             if group.fill(simd, rays) && group.is_narrow(&self.bounds) {
-                self.closest_group(simd, &mut stack, first, rays, &mut group, leaf);
+                self.closest_group(simd, &*self.nodes, &mut stack, (first, rays), &mut group, leaf);
             } else {
                 self.closest_alone(simd, &mut stack, first, rays, leaf);
             }
@@ -127,9 +127,9 @@ impl Bvh {
             let rays = &rays[..rays.len().min(occluded.len())];
             let first = number * GROUP;
             let found = if group.fill(simd, rays) {
-                self.any_group(simd, &mut stack, first, rays, &group, leaf)
+                self.any_group(simd, &*self.nodes, &mut stack, (first, rays), &group, leaf)
             } else {
-                self.any_alone(simd, Child::ROOT, stack.view(), first, u32::MAX, rays, leaf)
+                self.any_alone(simd, &*self.nodes, Child::ROOT, stack.view(), (first, u32::MAX, rays), leaf)
             };
             for (lane, occluded) in occluded.iter_mut().enumerate() {
                 *occluded = found >> lane & 1 != 0;
@@ -142,15 +142,15 @@ impl Bvh {
     pub(crate) fn closest_group<S: Lanes>(
         &self,
         simd: S,
+        boxes: impl Boxes,
         stack: &mut Stack,
-        first: usize,
-        rays: &mut [Ray],
+        (first, rays): (usize, &mut [Ray]),
         group: &mut Group,
         leaf: &mut impl Leaf,
     ) {
         let nodes = &*self.nodes;
         let mut stack = stack.view();
-        let mut next = self.nearest_slot(simd, Child::ROOT, &group.bundle, &mut stack);
+        let mut next = self.nearest_slot(simd, boxes, Child::ROOT, &group.bundle, &mut stack);
         loop {
             let place = match next {
                 Some(place) => place as usize,
@@ -163,7 +163,7 @@ impl Bvh {
             let (parent, slot) = (&nodes[place / WIDTH], place % WIDTH);
             let child = parent.children[slot];
             if !child.is_leaf() {
-                next = self.nearest_slot(simd, child, &group.bundle, &mut stack);
+                next = self.nearest_slot(simd, boxes, child, &group.bundle, &mut stack);
                 continue;
             }
             next = None;
@@ -184,24 +184,42 @@ impl Bvh {
 
     /// The nearest child that the bundle may meet, as a place (node and slot in one number); pushes the others.
     #[inline(always)]
-    fn nearest_slot<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut StackView) -> Option<u32> {
+    fn nearest_slot<S: Lanes>(
+        &self,
+        simd: S,
+        boxes: impl Boxes,
+        node: Child,
+        bundle: &Bundle,
+        stack: &mut StackView,
+    ) -> Option<u32> {
         let (mask, enter) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
         nearest(
             mask,
             &enter.into(),
             stack,
             #[inline(always)]
-            |slot| place_of(node, slot),
+            |slot| {
+                boxes.prefetch(self.nodes[node.0 as usize].children[slot]);
+                place_of(node, slot)
+            },
         )
     }
 
     /// The last of the children that the bundle may meet, as a place: the largest one, which most likely holds a hit.
     /// Pushes the others.
     #[inline(always)]
-    fn last_slot<S: Lanes>(&self, simd: S, node: Child, bundle: &Bundle, stack: &mut StackView) -> Option<u32> {
+    fn last_slot<S: Lanes>(
+        &self,
+        simd: S,
+        boxes: impl Boxes,
+        node: Child,
+        bundle: &Bundle,
+        stack: &mut StackView,
+    ) -> Option<u32> {
         let (mask, _) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
         let last = mask.checked_ilog2()?;
         for slot in Bits(mask ^ 1 << last) {
+            boxes.prefetch(self.nodes[node.0 as usize].children[slot]);
             stack.push(place_of(node, slot).into());
         }
         Some(place_of(node, last as usize))
@@ -233,9 +251,9 @@ impl Bvh {
     pub(crate) fn any_group<S: Lanes>(
         &self,
         simd: S,
+        boxes: impl Boxes,
         stack: &mut Stack,
-        first: usize,
-        rays: &[Ray],
+        (first, rays): (usize, &[Ray]),
         group: &Group,
         leaf: &mut impl Leaf,
     ) -> u32 {
@@ -243,7 +261,7 @@ impl Bvh {
         let all = u32::MAX >> (GROUP - rays.len());
         let mut found = 0;
         let mut stack = stack.view();
-        let mut next = self.last_slot(simd, Child::ROOT, &group.bundle, &mut stack);
+        let mut next = self.last_slot(simd, boxes, Child::ROOT, &group.bundle, &mut stack);
         while found != all {
             let place = match next {
                 Some(place) => place as usize,
@@ -268,9 +286,9 @@ impl Bvh {
                     }
                 }
             } else if active.count_ones() > FEW {
-                next = self.last_slot(simd, child, &group.bundle, &mut stack);
+                next = self.last_slot(simd, boxes, child, &group.bundle, &mut stack);
             } else {
-                found |= self.any_alone(simd, child, stack.above(), first, active, rays, leaf);
+                found |= self.any_alone(simd, boxes, child, stack.above(), (first, active, rays), leaf);
             }
         }
         stack.clear();
@@ -278,16 +296,14 @@ impl Bvh {
     }
 
     /// Which of the active rays, each on its own, hit something in the subtree at `from`; the stack is empty.
-    #[allow(clippy::too_many_arguments)]
     #[inline(never)]
     fn any_alone<S: Lanes>(
         &self,
         simd: S,
+        boxes: impl Boxes,
         from: Child,
         mut stack: StackView,
-        base: usize,
-        active: u32,
-        rays: &[Ray],
+        (base, active, rays): (usize, u32, &[Ray]),
         leaf: &mut impl Leaf,
     ) -> u32 {
         simd.vectorize(
@@ -298,7 +314,7 @@ impl Bvh {
                     if active >> lane & 1 != 0 {
                         let slabs = Slabs::of_ray(simd, ray);
                         let ray = (base + lane, ray);
-                        let hit = any_below(simd, &*self.nodes, from, stack.above(), ray, &slabs, leaf);
+                        let hit = any_below(simd, boxes, from, stack.above(), ray, &slabs, leaf);
                         found |= u32::from(hit) << lane;
                     }
                 }

@@ -114,15 +114,14 @@ fn row<S: Lanes>(simd: S, ray: &Ray) -> f32x8<S> {
     [o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max].simd_into(simd)
 }
 
-/// The least and the largest of each number; `None` where a ray is infinite. (Undefined rays are none of them, but the
-/// first.)
+/// The least and the largest of each number; `None` where a ray is infinite. (Undefined rays may be passed over, or also
+/// give `None`.)
 #[inline(always)]
 fn extremes<S: Lanes>(simd: S, rows: &[f32x8<S>; WIDTH]) -> Option<([f32; WIDTH], [f32; WIDTH])> {
-    let (mut low, mut high) = (rows[0], rows[0]);
-    for row in rows {
-        low = simd.least(*row, low);
-        high = simd.most(*row, high);
-    }
+    let [a, b, c, d, e, f, g, h] = *rows;
+    let low =
+        simd.least(simd.least(simd.least(a, b), simd.least(c, d)), simd.least(simd.least(e, f), simd.least(g, h)));
+    let high = simd.most(simd.most(simd.most(a, b), simd.most(c, d)), simd.most(simd.most(e, f), simd.most(g, h)));
     let is_finite = low.abs().simd_lt(f32::INFINITY) & high.abs().simd_lt(f32::INFINITY);
     (bits(is_finite) & ORIGIN_AND_DIRECTION == ORIGIN_AND_DIRECTION).then(
         #[inline(always)]

@@ -19,8 +19,8 @@
 
 use crate::lanes::Lanes;
 use crate::node::WIDTH;
-use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
+use fearless_simd::{f32x4, f32x8, u32x8};
 use juggler_math::{Ray, Vec3};
 
 pub(crate) const WIDEN: f32 = 1.0 + 8.0 * f32::EPSILON;
@@ -51,10 +51,13 @@ pub(crate) struct Slabs {
 pub(crate) struct Bundle {
     /// Per axis 0 where the minimum is the near plane, 1 where the maximum is.
     pub side: [usize; 3],
-    pub near_origin: [f32; 3],
-    pub far_origin: [f32; 3],
-    pub near_inverse: [f32; 3],
-    pub far_inverse: [f32; 3],
+    /// Of the rays that enter first: origin and direction. (The other two mean nothing.)
+    pub near: [f32; WIDTH],
+    /// Of the rays that leave last.
+    pub far: [f32; WIDTH],
+    /// The inverses of these, as [`inverses`] gives them.
+    pub near_inverse: [f32; WIDTH],
+    pub far_inverse: [f32; WIDTH],
     pub t_min: f32,
     pub t_max: f32,
 }
@@ -188,19 +191,30 @@ impl Extent {
     /// Distances below `t_min >= 0` are cut off anyway, so the near planes only need their smallest positive
     /// distance (smallest inverse) and the far planes their largest.
     #[inline(always)]
-    pub fn bundle(&self) -> Bundle {
-        let Self { low, high, signs } = self;
-        let side = [*signs as usize & 1, (signs >> 1) as usize & 1, (signs >> 2) as usize & 1];
-        let near = [[high, low][side[0]], [high, low][side[1]], [high, low][side[2]]];
-        let far = [[low, high][side[0]], [low, high][side[1]], [low, high][side[2]]];
+    pub fn bundle<S: Lanes>(&self, simd: S) -> Bundle {
+        let (low, high) = (simd.load(&self.low), simd.load(&self.high));
+        let axis: u32x8<S> = [1, 2, 4, 1, 2, 4, 0, 0].simd_into(simd);
+        let is_positive = (axis & u32x8::splat(simd, self.signs)).simd_eq(0);
+        let (near, far) = (is_positive.select(high, low), is_positive.select(low, high));
         Bundle {
-            side,
-            near_origin: [near[0][0], near[1][1], near[2][2]],
-            far_origin: [far[0][0], far[1][1], far[2][2]],
-            near_inverse: inverses(Vec3::new(near[0][3], near[1][4], near[2][5])).to_array(),
-            far_inverse: (inverses(Vec3::new(far[0][3], far[1][4], far[2][5])) * WIDEN).to_array(),
-            t_min: low[6],
-            t_max: cull_distance(high[7]),
+            side: [0, 1, 2].map(
+                #[inline(always)]
+                |axis| (self.signs >> axis) as usize & 1,
+            ),
+            near: near.into(),
+            far: far.into(),
+            near_inverse: inverses_of(simd, near).into(),
+            far_inverse: (inverses_of(simd, far) * WIDEN).into(),
+            t_min: self.low[6],
+            t_max: cull_distance(self.high[7]),
         }
     }
+}
+
+/// [`inverses`], eight at a time.
+#[inline(always)]
+pub(crate) fn inverses_of<S: Lanes>(simd: S, components: f32x8<S>) -> f32x8<S> {
+    let inverses = simd.splat(1.0) / components;
+    let overflows = inverses.abs().simd_gt(f32::MAX) & !components.simd_eq(0.0);
+    overflows.select(simd.splat(f32::NAN), inverses)
 }

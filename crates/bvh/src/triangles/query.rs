@@ -126,7 +126,7 @@ impl<F: Filter> Query<'_, F> {
         for (number, (rays, hits)) in rays.chunks_mut(GROUP).zip(hits.chunks_mut(GROUP)).enumerate() {
             let first = number * GROUP;
             if group.fill(simd, rays) && group.is_narrow(&self.tree.bvh.bounds) && many.fill(first, &group) {
-                self.tree.bvh.closest_group(simd, &mut stack, 0, rays, &mut group, &mut many);
+                self.tree.bvh.closest_group(simd, self.tree.memory(), &mut stack, (0, rays), &mut group, &mut many);
                 many.write_hits(rays, hits);
             } else {
                 self.closest_each(simd, &mut stack, first, rays, hits);
@@ -151,7 +151,7 @@ impl<F: Filter> Query<'_, F> {
                     self.any_each(simd, &mut stack, first, rays, occluded);
                     continue;
                 }
-                let found = self.tree.bvh.any_group(simd, &mut stack, 0, rays, &group, &mut many);
+                let found = self.tree.bvh.any_group(simd, self.tree.memory(), &mut stack, (0, rays), &group, &mut many);
                 for (lane, occluded) in occluded.iter_mut().enumerate() {
                     *occluded = found >> lane & 1 != 0;
                 }
