@@ -162,7 +162,7 @@ fn nodes_with(bvh: &Bvh, bounds: impl Fn(usize) -> Aabb + Sync) -> Pages<Node> {
     let mut nodes = bvh.nodes.clone();
     refit(&mut nodes, |leaf| {
         let items = &bvh.order[leaf.items().start as usize..leaf.items().end as usize];
-        items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(&bounds(item as usize))))
+        items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(Extent::raw(&bounds(item as usize)))))
     });
     nodes
 }

@@ -101,7 +101,7 @@ fn split_large(
         };
         let chunks: Vec<Bins> = items.par_chunks(CHUNK).map(bins).collect();
         let mut all = Bins::EMPTY;
-        chunks.iter().for_each(|bins| all.merge(bins));
+        chunks.iter().for_each(|bins| all.merge(bins, &mapping));
         let cut = all.best(&mapping, around.bounds, settings.block)?;
         let lefts: Vec<usize> = chunks.iter().map(|bins| bins.left_count(&cut)).collect();
         let (left, [a, b]) = all.sides(&mapping, &cut);

@@ -4,6 +4,7 @@
 //! probability of the ratio of their areas.
 
 use super::item::{Extent, Item};
+use bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 pub(super) const MAX_BINS: usize = 32;
@@ -71,19 +72,49 @@ impl Rule {
     }
 }
 
-/// Boxes and counts of the bins along three axes.
-#[derive(Clone)]
-pub(super) struct Bins {
-    boxes: [[Extent; 3]; MAX_BINS],
-    counts: [[i32; 4]; MAX_BINS],
+/// What stands for no item in lane 3 of a bin: with any count added, the bits of a float that is below those of items
+/// and that no arithmetic turns into a subnormal number, which would be slow.
+const NONE: u32 = 0x2000_0000;
+
+/// The box around the items of a bin, with their number above [`NONE`] as an integer in lane 3 of the low corner.
+#[derive(Clone, Copy)]
+struct Bin(Extent);
+
+impl Bin {
+    const EMPTY: Self = {
+        let (inf, low) = (f32::INFINITY, f32::NEG_INFINITY);
+        Self(Extent { low: f32x4::new([inf, inf, inf, f32::from_bits(NONE)]), high: f32x4::new([low; 4]) })
+    };
+
+    /// An item's lane 3, as a float, is above any count, so that the count survives the union.
+    #[inline(always)]
+    fn add(&mut self, item: &Item) {
+        let Extent { low, high } = self.0.union(item.extent());
+        self.0 = Extent { low: cast(cast::<_, i32x4>(low) + i32x4::new([0, 0, 0, 1])), high };
+    }
+
+    fn merge(&mut self, other: &Self) {
+        let count = self.count() + other.count();
+        let extent = self.0.union(other.0);
+        let [x, y, z, _] = extent.low.to_array();
+        self.0 = Extent { low: f32x4::new([x, y, z, f32::from_bits(NONE + count)]), high: extent.high };
+    }
+
+    #[inline(always)]
+    fn count(&self) -> u32 {
+        self.0.low.as_array()[3].to_bits() - NONE
+    }
 }
 
+/// The bins along three axes.
+#[derive(Clone)]
+pub(super) struct Bins([[Bin; MAX_BINS]; 3]);
+
 impl Bins {
-    pub const EMPTY: Self = Self { boxes: [[Extent::EMPTY; 3]; MAX_BINS], counts: [[0; 4]; MAX_BINS] };
+    pub const EMPTY: Self = Self([[Bin::EMPTY; MAX_BINS]; 3]);
 
     pub fn fill(&mut self, mapping: &Mapping, items: &[Item]) {
-        self.boxes[..mapping.count].fill([Extent::EMPTY; 3]);
-        self.counts[..mapping.count].fill([0; 4]);
+        self.0.iter_mut().for_each(|bins| bins[..mapping.count].fill(Bin::EMPTY));
         if items.len() < ONE_SET {
             items.iter().for_each(|item| self.add(mapping, item));
             return;
@@ -96,37 +127,40 @@ impl Bins {
             other.add(mapping, b);
         }
         second[first.len()..].iter().for_each(|item| self.add(mapping, item));
-        self.merge(&other);
+        self.merge(&other, mapping);
     }
 
     #[inline(always)]
     fn add(&mut self, mapping: &Mapping, item: &Item) {
-        let bins = mapping.bins(item).to_array();
-        for (axis, &bin) in bins[..3].iter().enumerate() {
-            let bin = bin as usize % MAX_BINS;
-            self.boxes[bin][axis] = self.boxes[bin][axis].union(item.extent());
-            self.counts[bin][axis] += 1;
+        let [x, y, z, _] = mapping.bins(item).to_array();
+        for (bins, bin) in self.0.iter_mut().zip([x, y, z]) {
+            bins[bin as usize % MAX_BINS].add(item);
         }
     }
 
-    pub fn merge(&mut self, other: &Self) {
-        for bin in 0..MAX_BINS {
-            for axis in 0..3 {
-                self.boxes[bin][axis] = self.boxes[bin][axis].union(other.boxes[bin][axis]);
-                self.counts[bin][axis] += other.counts[bin][axis];
-            }
+    /// Adds the items of bins with the same mapping.
+    pub fn merge(&mut self, other: &Self, mapping: &Mapping) {
+        for (bins, others) in self.0.iter_mut().zip(&other.0) {
+            bins[..mapping.count].iter_mut().zip(others).for_each(|(bin, other)| bin.merge(other));
         }
+    }
+
+    /// The bins at one position along the three axes.
+    #[inline(always)]
+    fn at(&self, position: usize) -> [&Bin; 3] {
+        let [x, y, z] = &self.0;
+        [&x[position], &y[position], &z[position]]
     }
 
     /// How many items are left of the cut, and the box around them; and the box of the others.
     pub fn sides(&self, mapping: &Mapping, cut: &Cut) -> (usize, [Extent; 2]) {
-        let boxes = |bins: &[[Extent; 3]]| bins.iter().fold(Extent::EMPTY, |all, bin| all.union(bin[cut.axis]));
-        let (left, right) = self.boxes[..mapping.count].split_at(cut.at);
+        let boxes = |bins: &[Bin]| bins.iter().fold(Extent::EMPTY, |all, bin| all.union(bin.0));
+        let (left, right) = self.0[cut.axis][..mapping.count].split_at(cut.at);
         (self.left_count(cut), [boxes(left), boxes(right)])
     }
 
     pub fn left_count(&self, cut: &Cut) -> usize {
-        self.counts[..cut.at].iter().map(|counts| counts[cut.axis] as usize).sum()
+        self.0[cut.axis][..cut.at].iter().map(|bin| bin.count() as usize).sum()
     }
 
     /// The cheapest cut with items on both sides. `block` items cost as much as one, and areas are shares of
@@ -136,13 +170,13 @@ impl Bins {
         let mut right_costs = [f32x4::ZERO; MAX_BINS];
         let mut side = Side::EMPTY;
         for at in (1..mapping.count).rev() {
-            side.add(&self.boxes[at], self.counts[at]);
+            side.add(self.at(at));
             right_costs[at] = side.cost(inverse, block);
         }
         let (mut least, mut best) = (f32x4::splat(f32::INFINITY), f32x4::ZERO);
         let mut side = Side::EMPTY;
         for (at, right_cost) in right_costs.iter().enumerate().take(mapping.count).skip(1) {
-            side.add(&self.boxes[at - 1], self.counts[at - 1]);
+            side.add(self.at(at - 1));
             // Where a side is empty this is a NaN, which is not less.
             let cost = side.cost(inverse, block) + *right_cost;
             let better = cost.simd_lt(least);
@@ -177,11 +211,13 @@ impl Side {
     const EMPTY: Self = Self { boxes: [Extent::EMPTY; 3], counts: i32x4::new([0; 4]) };
 
     #[inline(always)]
-    fn add(&mut self, boxes: &[Extent; 3], counts: [i32; 4]) {
-        for (all, other) in self.boxes.iter_mut().zip(boxes) {
-            *all = all.union(*other);
+    fn add(&mut self, bins: [&Bin; 3]) {
+        for (all, bin) in self.boxes.iter_mut().zip(bins) {
+            *all = all.union(bin.0);
         }
-        self.counts += i32x4::new(counts);
+        let [x, y, z] = bins.map(|bin| bin.0.low);
+        let [.., counts] = f32x4::transpose([x, y, z, z]);
+        self.counts += cast::<_, i32x4>(counts) - i32x4::splat(NONE as i32);
     }
 
     #[inline(always)]

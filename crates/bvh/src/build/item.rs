@@ -46,6 +46,13 @@ impl Extent {
         [x, y, z]
     }
 
+    /// The box as it is: not yet as the builder takes it, see [`Item::new`].
+    #[inline(always)]
+    pub fn raw(bounds: &Aabb) -> Self {
+        let corner = |v: Vec3| f32x4::new([v.x, v.y, v.z, 0.0]);
+        Self { low: corner(bounds.min), high: corner(bounds.max) }
+    }
+
     pub fn aabb(self) -> Aabb {
         let point = |v: f32x4| Vec3::from_slice(&v.to_array()[..3]);
         Aabb { min: point(self.low), max: point(self.high) }
@@ -76,14 +83,15 @@ const NUMBER: u32 = 0x4000_0000;
 impl Item {
     /// `None` for a box that no ray can meet: an empty one and one with a NaN. Infinite bounds become the
     /// largest finite numbers.
-    #[inline]
-    pub fn new(bounds: &Aabb, number: u32) -> Option<Self> {
-        let usable = bounds.min.cmple(bounds.max).all();
+    #[inline(always)]
+    pub fn new(bounds: Extent, number: u32) -> Option<Self> {
+        let usable = bounds.low.simd_le(bounds.high).to_bitmask() & 7 == 7;
+        let largest = f32x4::splat(f32::MAX);
         // The sum takes -0 to +0.
-        let cut = |v: Vec3| (v.clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)) + Vec3::ZERO).to_array();
-        let ([a, b, c], [d, e, f]) = (cut(bounds.min), cut(bounds.max));
-        let low = f32x4::new([a, b, c, f32::from_bits(NUMBER | number)]);
-        usable.then(|| Self(Extent { low, high: f32x4::new([d, e, f, 0.0]) }))
+        let cut = |v: f32x4| v.fast_max(-largest).fast_min(largest) + f32x4::ZERO;
+        let lanes = f32x4::new([u32::MAX, u32::MAX, u32::MAX, 0].map(f32::from_bits));
+        let low = lanes.bitselect(cut(bounds.low), f32x4::splat(f32::from_bits(NUMBER | number)));
+        usable.then(|| Self(Extent { low, high: cut(bounds.high) & lanes }))
     }
 
     /// The same item, or a part of it, with another box.
@@ -146,13 +154,13 @@ const CHUNK: usize = 1 << 13;
 
 impl Items {
     /// Item `i` has the box `bounds(i)`. The error is that of the smallest `i`.
-    pub fn new<E: Send>(count: usize, bounds: impl Fn(usize) -> Result<Aabb, E> + Sync) -> Result<Self, E> {
+    pub fn new<E: Send>(count: usize, bounds: impl Fn(usize) -> Result<Extent, E> + Sync) -> Result<Self, E> {
         let mut list = Pages::zeroed(count);
         let take = |(chunk, items): (usize, &mut [Item])| {
             let (mut around, mut used) = (Around::EMPTY, 0);
             for i in 0..items.len() {
                 let number = chunk * CHUNK + i;
-                if let Some(item) = Item::new(&bounds(number)?, number as u32) {
+                if let Some(item) = Item::new(bounds(number)?, number as u32) {
                     around = around.with(&item);
                     items[used] = item;
                     used += 1;

@@ -123,7 +123,7 @@ impl Bvh {
     /// [`Bvh::build`] with the leaf's size and cost chosen.
     pub fn build_with(boxes: &[Aabb], options: &BuildOptions) -> Self {
         let boxes = &boxes[..boxes.len().min(MAX_ITEMS)];
-        let Ok(items) = Items::new(boxes.len(), |i| Ok::<_, Infallible>(boxes[i]));
+        let Ok(items) = Items::new(boxes.len(), |i| Ok::<_, Infallible>(Extent::raw(&boxes[i])));
         Self::over(items, options)
     }
 

@@ -26,7 +26,7 @@ pub(super) fn build(mut items: Items, leaf_size: usize) -> (Pages<BinaryNode>, V
     let bounds = |cluster: usize| {
         let (first, count) = clusters[cluster];
         let keys = &keys[first as usize..][..count as usize];
-        Ok::<_, Infallible>(keys.iter().fold(Extent::EMPTY, |all, key| all.union(item(key).extent())).aabb())
+        Ok::<_, Infallible>(keys.iter().fold(Extent::EMPTY, |all, key| all.union(item(key).extent())))
     };
     let Ok(boxes) = Items::new(clusters.len(), bounds);
     let (mut nodes, order) =

@@ -20,8 +20,17 @@ pub(super) fn in_place(items: &mut [Item], rule: &Rule) -> Centers {
         items[left] = item;
         left += usize::from(is_left);
     }
-    let around = |items: &[Item]| items.iter().fold(Extent::EMPTY, |all, item| all.with(item.center()));
-    [around(&items[..left]), around(&items[left..])]
+    [centers(&items[..left]), centers(&items[left..])]
+}
+
+/// The box of the centers. Even and odd items in turns, whose minima need not wait for each other.
+fn centers(items: &[Item]) -> Extent {
+    let (pairs, rest) = items.as_chunks();
+    let mut all = [Extent::EMPTY; 2];
+    for [a, b] in pairs {
+        all = [all[0].with(a.center()), all[1].with(b.center())];
+    }
+    rest.iter().fold(all[0].union(all[1]), |all, item| all.with(item.center()))
 }
 
 /// Into another place of the same length, chunk by chunk in parallel; `lefts` says how many items of each
@@ -41,14 +50,14 @@ pub(super) fn into(items: &[Item], target: &mut [Item], chunk: usize, lefts: &[u
 }
 
 fn scatter(items: &[Item], targets: &mut [&mut [Item]; 2], rule: &Rule) -> Centers {
-    let (mut counts, mut centers) = ([0; 2], NOTHING);
+    let mut counts = [0; 2];
     for item in items {
         let side = usize::from(!rule.is_left(item));
         if let Some(place) = targets[side].get_mut(counts[side]) {
             *place = *item;
         }
         counts[side] += 1;
-        centers[side] = centers[side].with(item.center());
     }
-    centers
+    // Of what lies in the cache now.
+    [centers(targets[0]), centers(targets[1])]
 }

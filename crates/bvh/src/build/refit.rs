@@ -43,12 +43,12 @@ impl Bvh {
     /// rays take longer the more the items have moved; the same boxes as before change nothing. An item
     /// whose box has become empty is not met. Runs on the threads of the current rayon pool.
     pub fn refit(&mut self, boxes: &[Aabb]) -> Result<(), RefitError> {
-        let usable = |item: usize| Item::new(&boxes[item], 0).is_some();
+        let usable = |item: usize| Item::new(Extent::raw(&boxes[item]), 0).is_some();
         self.check_refit(boxes.len(), self.order.iter().copied(), usable)?;
         let order = &self.order;
         self.bounds = refit(&mut self.nodes, |leaf| {
             let items = &order[leaf.items().start as usize..leaf.items().end as usize];
-            items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(&boxes[item as usize])))
+            items.iter().fold(Extent::EMPTY, |all, &item| all.union(extent(Extent::raw(&boxes[item as usize]))))
         });
         self.update_cost();
         Ok(())
@@ -87,7 +87,7 @@ impl Bvh {
 }
 
 /// The box as the builder takes it, empty where it would leave it out.
-pub(crate) fn extent(bounds: &Aabb) -> Extent {
+pub(crate) fn extent(bounds: Extent) -> Extent {
     Item::new(bounds, 0).map_or(Extent::EMPTY, |item| item.extent())
 }
 

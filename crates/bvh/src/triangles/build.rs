@@ -7,8 +7,10 @@ use crate::pages::Pages;
 use crate::triangle::TriangleTest;
 use crate::triangle::has_area;
 use crate::{BuildOptions, Bvh, MAX_ITEMS, Quality};
+use bytemuck::cast;
 use juggler_math::{Aabb, Vec3};
 use rayon::prelude::*;
+use wide::{f32x4, i32x4};
 
 /// So many nodes or blocks are taken at once by a thread.
 const CHUNK: usize = 1 << 8;
@@ -139,29 +141,43 @@ impl Mesh<'_> {
             let corners = self.corners(triangle as usize).ok().filter(|&corners| has_area(corners));
             // One that can no longer be hit becomes a point, which no ray hits.
             block.set(lane, triangle, corners.unwrap_or_default());
-            around = around.union(corners.map_or(Extent::EMPTY, |corners| extent(&bounds_of(corners))));
+            around = around.union(corners.map_or(Extent::EMPTY, |corners| extent(bounds_of(corners))));
         }
         around
     }
 }
 
 /// The box of a triangle, empty when it can never be hit.
-fn bounds_of(corners: [Vec3; 3]) -> Aabb {
-    if has_area(corners) { around(corners) } else { Aabb::EMPTY }
+#[inline(always)]
+fn bounds_of(corners: [Vec3; 3]) -> Extent {
+    if has_area(corners) { around(corners) } else { Extent::EMPTY }
 }
 
-/// A box a little larger than needed around three corners: the triangle's test rounds the vertices in the ray's frame by
-/// up to 4 half ulps of the triangle's size more than the box's test allows for, and a ray that the test gives to this
-/// triangle must not miss its box.
-pub(super) fn around(corners: [Vec3; 3]) -> Aabb {
-    let bounds = Aabb::from_points(corners).grown(margin_of(corners));
-    Aabb {
-        min: Vec3::from(bounds.min.to_array().map(f32::next_down)),
-        max: Vec3::from(bounds.max.to_array().map(f32::next_up)),
-    }
+/// A box a little larger than needed around three corners, which are finite: the triangle's test rounds the vertices in
+/// the ray's frame by up to 4 half ulps of the triangle's size more than the box's test allows for, and a ray that the
+/// test gives to this triangle must not miss its box.
+#[inline(always)]
+pub(super) fn around(corners: [Vec3; 3]) -> Extent {
+    let [a, b, c] = corners.map(|v| f32x4::new([v.x, v.y, v.z, 0.0]));
+    let (low, high) = (a.fast_min(b).fast_min(c), a.fast_max(b).fast_max(c));
+    let [x, y, z, _] = (high - low).to_array();
+    let margin = f32x4::splat(x.max(y).max(z) * MARGIN);
+    Extent { low: -next_up(-(low - margin)), high: next_up(high + margin) }
 }
+
+/// The next larger number of each, or infinity. Not for negative infinity and NaN.
+#[inline(always)]
+fn next_up(numbers: f32x4) -> f32x4 {
+    // The sum takes -0 to +0.
+    let bits: i32x4 = cast(numbers.fast_min(f32x4::splat(f32::MAX)) + f32x4::ZERO);
+    let step: i32x4 = (bits >> 31) | i32x4::ONE;
+    cast(bits + step)
+}
+
+/// By how much of its longest side the box of a triangle is larger than needed.
+const MARGIN: f32 = 4.0 * f32::EPSILON;
 
 /// By how much the box of a triangle is larger than needed, on each side.
 pub(super) fn margin_of(corners: [Vec3; 3]) -> f32 {
-    Aabb::from_points(corners).extent().max_element() * (4.0 * f32::EPSILON)
+    Aabb::from_points(corners).extent().max_element() * MARGIN
 }

@@ -15,7 +15,7 @@ impl Divide for Mesh<'_> {
             // One step further than to the nearest, for rounding.
             let low = (low - margin).as_vec3().to_array().map(f32::next_down);
             let high = (high + margin).as_vec3().to_array().map(f32::next_up);
-            extent(&Aabb { min: low.into(), max: high.into() }).intersection(bounds)
+            extent(Extent::raw(&Aabb { min: low.into(), max: high.into() })).intersection(bounds)
         })
     }
 }

@@ -94,7 +94,7 @@ impl MovingTriangleBvh {
 
 /// Empty only where a corner is not finite: what has no area at one end may have one between.
 fn bounds_of(corners: [Vec3; 3]) -> Aabb {
-    if corners.iter().all(|corner| corner.is_finite()) { around(corners) } else { Aabb::EMPTY }
+    if corners.iter().all(|corner| corner.is_finite()) { around(corners).aabb() } else { Aabb::EMPTY }
 }
 
 /// Visitor for one ray.
