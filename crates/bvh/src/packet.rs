@@ -5,10 +5,10 @@
 //! have missed, for the price of one. The interval's test never misses what one of its rays meets. Where few
 //! rays are left in a box they go on alone.
 
-use crate::lanes::{Bits, Lanes, max};
+use crate::lanes::{Lanes, max};
 use crate::node::{Child, WIDTH};
 use crate::ray_lanes::RayLanes;
-use crate::single::{Boxes, any_below, closest_below, nearest};
+use crate::single::{Boxes, any_below, closest_below, first, nearest};
 use crate::slabs::{Bundle, Extent, Slabs};
 use crate::stack::{Stack, StackView, distance};
 use crate::{Bvh, Leaf};
@@ -217,12 +217,16 @@ impl Bvh {
         stack: &mut StackView,
     ) -> Option<u32> {
         let (mask, _) = self.nodes[node.0 as usize].test_bundle(simd, bundle);
-        let last = mask.checked_ilog2()?;
-        for slot in Bits(mask ^ 1 << last) {
-            boxes.prefetch(self.nodes[node.0 as usize].children[slot]);
-            stack.push(place_of(node, slot).into());
-        }
-        Some(place_of(node, last as usize))
+        let last = first(
+            mask,
+            stack,
+            #[inline(always)]
+            |slot| {
+                boxes.prefetch(self.nodes[node.0 as usize].children[slot]);
+                place_of(node, slot)
+            },
+        )?;
+        Some(place_of(node, last))
     }
 
     /// Traces the rays one by one.

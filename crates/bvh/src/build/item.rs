@@ -46,7 +46,7 @@ impl Extent {
         [x, y, z]
     }
 
-    /// The box as it is: not yet as the builder takes it, see [`Item::new`].
+    /// The corners of a box in vectors. The builder takes boxes only as [`Item::new`] makes them of these.
     #[inline(always)]
     pub fn raw(bounds: &Aabb) -> Self {
         let corner = |v: Vec3| f32x4::new([v.x, v.y, v.z, 0.0]);

@@ -58,6 +58,6 @@ fn scatter(items: &[Item], targets: &mut [&mut [Item]; 2], rule: &Rule) -> Cente
         }
         counts[side] += 1;
     }
-    // Of what lies in the cache now.
+    // The centers are read again: the items lie in the cache now.
     [centers(targets[0]), centers(targets[1])]
 }
