@@ -1,6 +1,6 @@
 //! From triangles to their tree: boxes, tree, then the blocks of the leaves.
 
-use super::{Block, IN_CACHE, LANES, TriangleBvh, TriangleError};
+use super::{Block, IN_CACHE, LANES, NEAR, TriangleBvh, TriangleError};
 use crate::build::{Extent, Items, extent, refit};
 use crate::node::{Child, Node};
 use crate::pages::Pages;
@@ -33,8 +33,9 @@ impl TriangleBvh {
             *block = mesh.block(&order[leaf.items().start as usize..leaf.items().end as usize])?;
             Ok::<_, TriangleError>(())
         })?;
-        let in_flight = bvh.bytes() + blocks.bytes() > IN_CACHE;
-        Ok(Self { bvh, blocks, in_flight, test: TriangleTest::default() })
+        let bytes = bvh.bytes() + blocks.bytes();
+        let (in_flight, prefetches) = (bytes > IN_CACHE, bytes > NEAR);
+        Ok(Self { bvh, blocks, in_flight, prefetches, test: TriangleTest::default() })
     }
 
     /// Moves the vertices: as many triangles as the tree was built over, in the same order. The tree keeps

@@ -33,6 +33,9 @@ use std::fmt;
 const LANES: usize = 8;
 /// Batches in trees of up to as many bytes are traced ray by ray: they stay near enough (measured).
 const IN_CACHE: usize = 8 << 20;
+/// Children in trees of up to as many bytes are not asked for ahead: they lie in the second-level cache of any processor of
+/// today, where asking costs more than it saves.
+const NEAR: usize = 256 << 10;
 const GROWTH: f32 = 8.0 * f32::EPSILON;
 
 /// Where a ray meets a triangle.
@@ -110,6 +113,8 @@ pub struct TriangleBvh {
     blocks: Pages<Block>,
     /// Whether rays wait for memory so long that several under way at once pay.
     in_flight: bool,
+    /// Whether rays wait for memory so long that asking for all children that they meet pays.
+    prefetches: bool,
     test: TriangleTest,
 }
 
@@ -148,7 +153,7 @@ impl TriangleBvh {
 
     #[inline(always)]
     fn memory(&self) -> Memory<'_> {
-        Memory { nodes: &self.bvh.nodes, blocks: &self.blocks }
+        Memory { nodes: &self.bvh.nodes, blocks: &self.blocks, prefetches: self.prefetches }
     }
 
     fn all(&self) -> Query<'_, All> {
@@ -209,6 +214,7 @@ impl TriangleBvh {
 struct Memory<'a> {
     nodes: &'a [Node],
     blocks: &'a [Block],
+    prefetches: bool,
 }
 
 impl Boxes for Memory<'_> {
@@ -224,6 +230,9 @@ impl Boxes for Memory<'_> {
 
     #[inline(always)]
     fn prefetch(&self, child: Child) {
+        if !self.prefetches {
+            return;
+        }
         // Selections, for the processor cannot guess what a child is.
         let (start, size) = if child.is_leaf() {
             (self.blocks.as_ptr().cast::<u8>(), size_of::<Block>())
