@@ -157,3 +157,25 @@ fn a_picture_whose_halves_are_apart_says_so() {
     assert_ne!(plain, own, "their samples differ");
     assert_eq!(plain, oidn, "their samples are the same");
 }
+
+/// Every integrator fills the layers of what is seen, and the layers of light add up to its
+/// picture.
+#[test]
+fn every_integrator_fills_all_layers() {
+    let path = r#"{"path": {"max_depth": 4}}"#;
+    let features = [Aov::Alpha, Aov::Normal, Aov::Depth, Aov::Position, Aov::Uv, Aov::ObjectId];
+    let light = [Aov::Emission, Aov::Direct, Aov::Indirect, Aov::Albedo];
+    let (known, _) = layers(SCENE, &features);
+    for integrator in ["classic", "path", "direct", "ambient_occlusion", "albedo", "normals", "depth"] {
+        let scene = SCENE.replace(path, &format!("{integrator:?}"));
+        let (found, picture) = layers(&scene, &[&features[..], &light[..]].concat());
+        for (channel, values) in &known {
+            assert_eq!(&found[channel], values, "{integrator}, {channel}");
+        }
+        assert!((found["albedo.R"][at(-0.4, 0.1)] - 0.9).abs() < 1e-5, "{integrator}");
+        for (pixel, shown) in picture.iter().enumerate() {
+            let sum: f32 = ["emission.G", "direct.G", "indirect.G"].iter().map(|channel| found[*channel][pixel]).sum();
+            assert!((sum - shown.g).abs() <= 1e-5 * shown.g.abs(), "{integrator}, pixel {pixel}: {sum}, {shown:?}");
+        }
+    }
+}

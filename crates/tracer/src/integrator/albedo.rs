@@ -18,12 +18,17 @@ pub struct Albedo {}
 
 impl Integrator for Albedo {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        emit.see_unlit(world, ray, vertex);
         let diffuse = world.phong(vertex).map(|phong| phong.diffuse);
         let albedo = diffuse.unwrap_or_else(|| {
             let shade = world.shade(vertex, -ray.direction, 1.0, path.sampler.at(0).next_1d());
             shade.albedo(-ray.direction)
         });
         emit.add(albedo, LightGroup::REST);
+    }
+
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
+        emit.miss(ray);
     }
 }
 

@@ -22,6 +22,7 @@ pub struct AmbientOcclusion {
 
 impl Integrator for AmbientOcclusion {
     fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        emit.see_unlit(world, ray, vertex);
         let surface = &vertex.surface;
         let facing = surface.normal.dot(ray.direction) < 0.0;
         let frame = Frame::around(if facing { surface.shading_normal } else { -surface.shading_normal });
@@ -32,7 +33,8 @@ impl Integrator for AmbientOcclusion {
         emit.if_visible(surface.spawn(direction, ray.time).up_to(distance), Rgb::WHITE, LightGroup::REST);
     }
 
-    fn escape(&self, _world: &World, _ray: &Ray, _path: &PathState, emit: &mut Emit) {
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
+        emit.miss(ray);
         emit.add(Rgb::WHITE, LightGroup::REST);
     }
 }

@@ -21,8 +21,13 @@ pub struct Depth {
 }
 
 impl Integrator for Depth {
-    fn vertex(&self, _world: &World, ray: &Ray, _path: &PathState, _vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        emit.see_unlit(world, ray, vertex);
         emit.add(Rgb::splat(ray.t_max / self.far.unwrap_or(1.0)), LightGroup::REST);
+    }
+
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
+        emit.miss(ray);
     }
 }
 

@@ -17,9 +17,14 @@ use serde::{Deserialize, Serialize};
 pub struct Normals {}
 
 impl Integrator for Normals {
-    fn vertex(&self, _world: &World, _ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+    fn vertex(&self, world: &World, ray: &Ray, _path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        emit.see_unlit(world, ray, vertex);
         let n = vertex.surface.shading_normal * 0.5 + 0.5;
         emit.add(Rgb::new(n.x, n.y, n.z), LightGroup::REST);
+    }
+
+    fn escape(&self, _world: &World, ray: &Ray, _path: &PathState, emit: &mut Emit) {
+        emit.miss(ray);
     }
 }
 

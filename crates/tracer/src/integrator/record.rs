@@ -5,6 +5,7 @@ use crate::bsdf::Scatter;
 use crate::film::{MASKS, Mark};
 use crate::frames::Frames;
 use crate::layer::{self, Guide, Layer, Layers, LightGroup};
+use crate::material::Shade;
 use crate::world::{Vertex, World};
 use juggler_math::{DVec2, Ray, Rgb, Vec3};
 use std::sync::Arc;
@@ -203,6 +204,24 @@ impl Emit<'_> {
         let slot = self.path.slot as usize;
         if let Some(record) = self.harvest.record.as_mut().filter(|_| self.path.depth == 0) {
             record.miss(slot, ray);
+        }
+    }
+
+    /// Records the surface that the path hit, as its material shades it.
+    #[inline]
+    pub fn see_shaded(&mut self, world: &World, ray: &Ray, vertex: &Vertex, shade: &Shade) {
+        if self.records() {
+            let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
+            let (is_smooth, scatter) = (shade.bsdf.is_specular(), shade.bsdf.scatter());
+            self.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
+        }
+    }
+
+    /// Records the surface that a camera ray hit, for integrators that do not trace light.
+    pub fn see_unlit(&mut self, world: &World, ray: &Ray, vertex: &Vertex) {
+        if self.records() {
+            let choice = if world.is_simple(vertex) { 0.0 } else { self.path.sampler.at(0).next_1d() };
+            self.see_shaded(world, ray, vertex, &world.shade(vertex, -ray.direction, 1.0, choice));
         }
     }
 

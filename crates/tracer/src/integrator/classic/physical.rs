@@ -3,7 +3,7 @@
 
 use super::Classic;
 use crate::bsdf::{BsdfSample, Scatter};
-use crate::integrator::{Emit, PathState, Sight};
+use crate::integrator::{Emit, PathState};
 use crate::material::Shade;
 use crate::sampler::Sampler;
 use crate::world::{Lamp, Vertex, World};
@@ -35,11 +35,7 @@ impl Classic {
         let seen = Seen { vertex, shade: &shade, wo, time: ray.time };
         let ambient = world.ambient();
         let reflected = if ambient.is_black() { Rgb::BLACK } else { seen.shade.bsdf.albedo(wo) * ambient };
-        if emit.records() {
-            let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
-            let (is_smooth, scatter) = (shade.bsdf.is_specular(), shade.bsdf.scatter());
-            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
-        }
+        emit.see_shaded(world, ray, vertex, &shade);
         emit.add(seen.shade.emission + reflected, world.shape_group(vertex.object));
         if !seen.shade.bsdf.is_specular() {
             for (number, lamp) in (0..).zip(world.lamps()) {
