@@ -34,6 +34,7 @@ const BUILT_IN: &[BuiltIn] = built_in! {
     "four-spheres-mirrors",
     "furnace",
     "glass-caustics",
+    "glossy-plates",
     "graham",
     "juggler",
     "juggler-daylight",

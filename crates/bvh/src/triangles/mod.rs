@@ -33,8 +33,8 @@ use std::fmt;
 const LANES: usize = 8;
 /// Batches in trees of up to as many bytes are traced ray by ray: they stay near enough (measured).
 const IN_CACHE: usize = 8 << 20;
-/// Children in trees of up to as many bytes are not asked for ahead: they lie in the second-level cache of any processor of
-/// today, where asking costs more than it saves.
+/// Children in trees of up to as many bytes are not asked for ahead: they lie in the second-level
+/// cache of any processor of today, where asking costs more than it saves.
 const NEAR: usize = 256 << 10;
 const GROWTH: f32 = 8.0 * f32::EPSILON;
 

@@ -1,5 +1,6 @@
 //! What a path of light remembers of where it last was scattered.
 
+use super::path::Sampling;
 use crate::medium::Interiors;
 use crate::world::{CasterId, Receiver};
 use juggler_math::Vec3;
@@ -9,6 +10,9 @@ use juggler_math::Vec3;
 pub struct Trail {
     /// Where it last was scattered, but for mirrors and clear glass.
     pub from: Vec3,
+    /// Bound on the distance between `from` and the true surface along the surface's normal; 0 in
+    /// media.
+    pub error: f32,
     /// Unit normal there, on the side that light comes to; zero where it may come from everywhere.
     pub normal: Vec3,
     /// Density per steradian with which its direction was chosen; infinite after the camera, a mirror or clear glass,
@@ -83,6 +87,7 @@ impl Trail {
     /// Of a ray from the camera.
     pub const CAMERA: Self = Self {
         from: Vec3::ZERO,
+        error: 0.0,
         normal: Vec3::ZERO,
         pdf: f32::INFINITY,
         asked: 1,
@@ -96,20 +101,13 @@ impl Trail {
     /// As what light comes to.
     #[inline]
     pub fn receiver(&self, time: f32) -> Receiver {
-        Receiver { point: self.from, normal: self.normal, time }
+        Receiver { point: self.from, error: self.error, normal: self.normal, time }
     }
 
-    /// The weight of light that this path has met, when `light` is the density with which each would have been asked.
+    /// Weight of light that this path has hit, where each light sample finds it with the density
+    /// `light`.
     #[inline]
-    pub fn weight(&self, light: impl FnOnce() -> f32) -> f32 {
-        if self.pdf == f32::INFINITY { 1.0 } else { power_heuristic(self.pdf, light() * f32::from(self.asked)) }
+    pub fn weight(&self, sampling: Sampling, light: impl FnOnce() -> f32) -> f32 {
+        if self.pdf == f32::INFINITY { 1.0 } else { sampling.bsdf_weight(self.pdf, light() * f32::from(self.asked)) }
     }
-}
-
-/// The weight of a sample of density `own` that might have been had with density `other` too (Veach 1997, section
-/// 9.2.2, exponent 2).
-#[inline]
-pub fn power_heuristic(own: f32, other: f32) -> f32 {
-    let ratio = other / own;
-    1.0 / (1.0 + ratio * ratio)
 }

@@ -34,10 +34,13 @@ pub struct Spot {
     pub intensity: f32,
     /// How its light falls off with distance.
     pub attenuation: Attenuation,
-    /// Angle from the axis up to which it shines in full.
+    /// Angle from the axis up to which it shines in full, in degrees. Between `beam_degrees` and
+    /// `cutoff_degrees` intensity falls linearly with the angle itself, not with its cosine, and
+    /// without a smooth step.
     #[schemars(range(min = 0, max = 180))]
     pub beam_degrees: f32,
-    /// Angle from the axis beyond which it does not shine; `beam_degrees` or more.
+    /// Cut-off angle: the angle from the axis beyond which it does not shine, in degrees;
+    /// `beam_degrees` or more.
     #[schemars(range(min = 0, max = 180))]
     pub cutoff_degrees: f32,
     /// Exponent of the cosine of the angle from the axis: gathers light around the axis; 0 leaves it even.

@@ -10,7 +10,7 @@
 use super::Derivatives;
 use super::arithmetic::{EDGE, clamp_within, double, first_in_range};
 use super::solid_angle::{area_pdf, area_sample, pick};
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -31,6 +31,9 @@ pub struct Cuboid {
     pub max: Vec3,
 }
 
+/// So close to the surface, as a share of the longest edge, a point counts as on it.
+const TOUCHING: f32 = 1e-5;
+
 impl Default for Cuboid {
     fn default() -> Self {
         Self { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) }
@@ -48,11 +51,13 @@ impl Cuboid {
         if far { Vec3::AXES[axis] } else { -Vec3::AXES[axis] }
     }
 
-    /// Running sums of the areas of the faces that `from` sees: up to three from outside, all six from inside.
+    /// Running sums of the areas of the faces that `from` sees: up to three from outside, all six
+    /// from inside and from the surface itself, where rounding decides on which side a point lies.
     fn visible(&self, from: Vec3) -> [f64; 6] {
         let e = self.max - self.min;
         let areas = [e.y * e.z, e.z * e.x, e.x * e.y].map(f64::from);
-        let inside = from.cmpge(self.min).all() && from.cmple(self.max).all();
+        let margin = Vec3::splat(TOUCHING * e.max_element());
+        let inside = from.cmpge(self.min - margin).all() && from.cmple(self.max + margin).all();
         let mut sum = 0.0;
         std::array::from_fn(|face| {
             let (axis, far) = axis_and_side(face as u32);
@@ -162,8 +167,11 @@ impl Shape for Cuboid {
         area_sample(from, point, Self::normal(face as u32), areas[5] as f32)
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        area_pdf(self, from, direction, self.visible(from)[5] as f32)
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
+        let areas = self.visible(from);
+        let [below, through] = [at.part.checked_sub(1), Some(at.part)]
+            .map(|face| face.and_then(|face| areas.get(face as usize)).copied().unwrap_or(0.0));
+        if through > below { area_pdf(from, at, areas[5] as f32) } else { 0.0 }
     }
 }
 

@@ -13,7 +13,7 @@ use super::arithmetic::{EDGE, clamp_within, cross_tube, double, first_in_range, 
 use super::derivatives::{Derivatives, about_y, of_disk};
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::tube::tube_surface;
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3, fun};
 use schemars::JsonSchema;
@@ -43,6 +43,9 @@ impl Default for Cylinder {
         Self { radius: 1.0, y_min: -1.0, y_max: 1.0, capped: true }
     }
 }
+
+/// So close to the surface, as a share of its size, a point counts as on it.
+const TOUCHING: f32 = 1e-5;
 
 /// Parts: the side where a ray enters the tube, the side where it leaves it, and the caps.
 const SIDE: u32 = 0;
@@ -75,11 +78,14 @@ impl Cylinder {
         cross_tube(origin, direction, radius).map(|(near, far)| [(near, SIDE), (far, FAR_SIDE)])
     }
 
-    /// Areas that `from` can see of side, bottom and top, as running sums, and half the angle of the visible
-    /// side. From inside that is everything, and so it is for an open one, which may hide parts of itself.
+    /// Areas that `from` can see of side, bottom and top, as running sums, and half the angle of
+    /// the visible side. From inside and from the surface itself that is everything, and so it is
+    /// for an open one, which may hide parts of itself.
     fn visible(&self, from: Vec3) -> ([f64; 3], f32) {
         let across = Vec2::new(from.x, from.z).length();
-        let (above, below, beside) = (from.y > self.y_max, from.y < self.y_min, across > self.radius);
+        let margin = TOUCHING * self.radius.max(self.y_max - self.y_min);
+        let (above, below) = (from.y > self.y_max + margin, from.y < self.y_min - margin);
+        let beside = across > self.radius + margin;
         let everything = !self.capped || !(above || below || beside);
         let half_angle = match (everything, beside) {
             (true, _) => PI,
@@ -177,8 +183,14 @@ impl Shape for Cylinder {
         area_sample(from, normal * self.radius + Vec3::Y * y, normal, area)
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        area_pdf(self, from, direction, self.visible(from).0[2] as f32)
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
+        let ([side, bottom, all], half_angle) = self.visible(from);
+        let is_picked = match at.part {
+            BOTTOM => bottom > side,
+            TOP => all > bottom,
+            _ => half_angle == PI || at.normal.dot(from - at.point) > 0.0,
+        };
+        if is_picked { area_pdf(from, at, all as f32) } else { 0.0 }
     }
 }
 

@@ -11,7 +11,7 @@ use super::arithmetic::{in_range, turn};
 use super::derivatives::{Derivatives, of_disk};
 use super::plane::cross_ground;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, fun};
 use schemars::JsonSchema;
@@ -84,8 +84,8 @@ impl Shape for Disk {
         area_sample(from, Vec3::new(cos, 0.0, sin) * distance, Vec3::Y, self.area())
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        area_pdf(self, from, direction, self.area())
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
+        area_pdf(from, at, self.area())
     }
 }
 

@@ -50,6 +50,17 @@ pub struct SurfaceSample {
     pub pdf: f32,
 }
 
+/// A point of a shape's surface, where a ray met it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The point, object space.
+    pub point: Vec3,
+    /// Unit normal of the surface there, object space.
+    pub normal: Vec3,
+    /// Triangle or face, as in [`Hit`].
+    pub part: u32,
+}
+
 /// Why a shape cannot be: the field at fault and what it should be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
@@ -83,9 +94,9 @@ pub trait Shape: Send + Sync {
     /// A point on the surface for `u` in the unit square; `None` when that one is seen edge-on or the shape has no
     /// end. A shape that is not convex may hide it behind itself: then it lights nothing.
     fn sample(&self, from: Vec3, u: Vec2) -> Option<SurfaceSample>;
-    /// Density per steradian with which [`Shape::sample`] picks the first point in this unit direction; 0 for a
-    /// miss. When `from` is on the shape itself, it must have been moved off as [`Surface::spawn`] does.
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32;
+    /// Density per steradian, seen from `from`, with which [`Shape::sample`] picks a point of this
+    /// surface; 0 for a point that it never picks from there.
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32;
     /// How many triangles it is made of; 0 for exact shapes.
     fn triangles(&self) -> usize {
         0

@@ -9,7 +9,7 @@
 
 use super::Derivatives;
 use super::arithmetic::in_range;
-use super::{Hit, InvalidShape, Shape, SurfaceSample};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -63,7 +63,7 @@ impl Shape for Plane {
         None
     }
 
-    fn pdf(&self, _from: Vec3, _direction: Vec3) -> f32 {
+    fn pdf(&self, _from: Vec3, _at: &SurfacePoint) -> f32 {
         0.0
     }
 }

@@ -11,7 +11,7 @@ use super::Derivatives;
 use super::arithmetic::in_range;
 use super::plane::cross_ground;
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -77,8 +77,8 @@ impl Shape for Rectangle {
         area_sample(from, point, Vec3::Y, self.area())
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        area_pdf(self, from, direction, self.area())
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
+        area_pdf(from, at, self.area())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Points picked evenly by area, and their density as the place that asks sees it.
 
-use super::{Shape, SurfaceSample};
-use juggler_math::{Ray, Vec3};
+use super::{SurfacePoint, SurfaceSample};
+use juggler_math::Vec3;
 
 /// Density per steradian seen from `from` of a point that is picked evenly among `area`: `distance² / (area cos)`
 /// (PBR 4th ed., section 4.2.3).
@@ -19,12 +19,10 @@ pub fn area_sample(from: Vec3, point: Vec3, normal: Vec3, area: f32) -> Option<S
     (pdf > 0.0 && pdf < f32::INFINITY).then_some(SurfaceSample { point, normal, pdf })
 }
 
-/// Density with which points picked evenly among `area` lie in a direction; 0 where it misses the shape.
-pub fn area_pdf(shape: &dyn Shape, from: Vec3, direction: Vec3, area: f32) -> f32 {
-    let ray = Ray::new(from, direction);
-    let Some(hit) = shape.intersect(&ray) else { return 0.0 };
-    let surface = shape.surface(&ray, &hit);
-    let pdf = density(from, surface.point, surface.normal, area);
+/// Density per steradian, seen from `from`, of a point that is picked evenly among `area`; 0 where
+/// it is seen edge-on.
+pub fn area_pdf(from: Vec3, at: &SurfacePoint, area: f32) -> f32 {
+    let pdf = density(from, at.point, at.normal, area);
     if pdf < f32::INFINITY { pdf } else { 0.0 }
 }
 

@@ -15,7 +15,7 @@
 use super::arithmetic::{double, in_range, root_fractions, roots, turn};
 use super::derivatives::{Derivatives, about_y};
 use super::solid_angle::{area_pdf, area_sample};
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::{Footprint, Surface};
 use juggler_math::{Aabb, DVec3, Frame, Ray, Vec2, Vec3, fun, robust, warp};
 use schemars::JsonSchema;
@@ -164,11 +164,11 @@ impl Shape for Sphere {
         Some(SurfaceSample { point: normal * self.radius, normal, pdf: cone.pdf() })
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
         match Cone::seen_from(from, self.radius) {
-            Some(cone) if self.occludes(&Ray::new(from, direction)) => cone.pdf(),
+            Some(cone) if at.normal.dot(from - at.point) > 0.0 => cone.pdf(),
             Some(_) => 0.0,
-            None => area_pdf(self, from, direction, self.area()),
+            None => area_pdf(from, at, self.area()),
         }
     }
 }

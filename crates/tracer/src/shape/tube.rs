@@ -9,7 +9,7 @@
 
 use super::arithmetic::{cross_tube, double, first_in_range, rounded_surface, turn};
 use super::derivatives::{Derivatives, about_y};
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3};
 use schemars::JsonSchema;
@@ -77,7 +77,7 @@ impl Shape for Tube {
         None
     }
 
-    fn pdf(&self, _from: Vec3, _direction: Vec3) -> f32 {
+    fn pdf(&self, _from: Vec3, _at: &SurfacePoint) -> f32 {
         0.0
     }
 }

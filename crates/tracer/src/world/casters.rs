@@ -27,13 +27,17 @@ const ALWAYS: f32 = 0.5;
 const GUIDED: f32 = 0.15;
 const GUIDED_BY_WORTH: f32 = 8.0;
 
+/// Balls whose surfaces are nowhere further apart than this, in radii, coincide.
+const COINCIDENT: f32 = 2e-4;
+
 /// A polished ball in its place.
 #[derive(Clone, Debug)]
 pub struct Caster {
     /// Where it is.
     pub ball: Ball,
-    /// Number of the shape.
-    pub object: u32,
+    /// Numbers of the shapes: several where balls of the same material lie in the same place, any
+    /// of which a ray may hit.
+    objects: Vec<u32>,
     polish: Polish,
 }
 
@@ -69,6 +73,16 @@ impl Polish {
         let strengths = [of(true), through];
         (strengths != [0.0; 2]).then_some(Self { bsdf, strengths, ior, medium })
     }
+
+    /// Whether two materials do the same to light.
+    fn equals(&self, other: &Self) -> bool {
+        let weights = |polish: &Self| {
+            [Vec3::new(0.8, 0.0, 0.6), Vec3::new(0.2, 0.0, 0.98), Vec3::new(0.8, 0.0, -0.6)]
+                .map(|wo| polish.bsdf.deltas(wo).iter().fold(Rgb::BLACK, |sum, delta| sum + delta.weight))
+        };
+        (self.strengths, self.ior, self.medium) == (other.strengths, other.ior, other.medium)
+            && weights(self) == weights(other)
+    }
 }
 
 /// A ball and a way by it.
@@ -90,8 +104,46 @@ impl Caster {
         let polish = |ball: &Standing| polishes.get(&ball.material)?.as_ref();
         let mut casters: Vec<Self> = balls.iter().filter_map(|ball| Self::new(ball, polish(ball)?)).collect();
         casters.sort_by(|a, b| b.ball.radius.total_cmp(&a.ball.radius));
+        let mut casters = Self::without_coincident(casters);
         casters.truncate(MOST);
         casters
+    }
+
+    /// Joins balls of one material in exactly the same place. Leaves out balls that nearly
+    /// coincide, or whose materials differ: which of them a ray hits is up to rounding, so that
+    /// their light must be found by the path alone.
+    fn without_coincident(casters: Vec<Self>) -> Vec<Self> {
+        let mut joined: Vec<(Self, bool)> = Vec::with_capacity(casters.len());
+        for caster in casters {
+            // Sorted by radius: balls about as large stand at the end.
+            let nearby =
+                joined.iter_mut().rev().take_while(|(other, _)| other.ball.radius <= caster.ball.radius * 1.01);
+            let mut coincident = nearby.filter(|(other, _)| other.coincides(&caster)).peekable();
+            let is_free = coincident.peek().is_none();
+            for (other, is_usable) in coincident {
+                if *is_usable && other.ball == caster.ball && other.polish.equals(&caster.polish) {
+                    other.objects.extend(&caster.objects);
+                } else {
+                    *is_usable = false;
+                }
+            }
+            if is_free {
+                joined.push((caster, true));
+            }
+        }
+        joined.into_iter().filter_map(|(caster, is_usable)| is_usable.then_some(caster)).collect()
+    }
+
+    /// Whether the surfaces of two balls are so near each other everywhere that rounding may swap
+    /// them.
+    fn coincides(&self, other: &Self) -> bool {
+        let (a, b) = (self.ball, other.ball);
+        (a.center - b.center).length() + (a.radius - b.radius).abs() <= COINCIDENT * a.radius
+    }
+
+    /// Whether a shape is this ball, or coincides with it.
+    pub fn is(&self, object: u32) -> bool {
+        self.objects.contains(&object)
     }
 
     fn new(standing: &Standing, polish: &Polish) -> Option<Self> {
@@ -100,7 +152,7 @@ impl Caster {
         };
         let radius = sphere.radius * transform.uniform_scale()?;
         let ball = Ball { center: transform.origin(), radius };
-        Some(Self { ball, object: standing.number, polish: polish.clone() })
+        Some(Self { ball, objects: vec![standing.number], polish: polish.clone() })
     }
 
     /// How light goes by it.
@@ -227,7 +279,7 @@ impl World {
 
     /// The way by a shape, by its number, if it is a polished ball.
     pub fn caster_of(&self, object: u32, is_refracted: bool) -> Option<CasterId> {
-        let place = self.casters.iter().position(|caster| caster.object == object)?;
+        let place = self.casters.iter().position(|caster| caster.is(object))?;
         Some(CasterId { place: place as u16, is_refracted })
     }
 

@@ -8,7 +8,7 @@ use crate::background::AnyBackground;
 use crate::emitter::{AreaEmitter, LightBounds, LightTree, Pick};
 use crate::light::LightSample;
 use juggler_bvh::SimdLevel;
-use juggler_math::{Ray, Rgb, Vec2, Vec3};
+use juggler_math::{Ray, Rgb, Vec2, Vec3, robust};
 
 /// Everything that gives off light.
 #[derive(Clone, Debug, Default)]
@@ -78,10 +78,26 @@ pub enum Origin {
 pub struct Receiver {
     /// The place.
     pub point: Vec3,
+    /// Bound on the distance between `point` and the true surface along the surface's normal; 0 in
+    /// media.
+    pub error: f32,
     /// Unit normal on the side that light comes to; zero where it may come from everywhere.
     pub normal: Vec3,
     /// When.
     pub time: f32,
+}
+
+impl Receiver {
+    /// Whether the receiver lies in the plane of an emitter's surface, which has this unit normal
+    /// `distance` away in the direction `wi`, up to rounding. Such a surface sends no light there,
+    /// but rounding makes some.
+    #[inline]
+    pub(super) fn is_coplanar(&self, wi: Vec3, distance: f32, normal: Vec3) -> bool {
+        // Bound on the receiver's height over the plane: its own error, the emitter's, and those of
+        // `wi` and `normal`.
+        let bound = 2.0 * self.error + robust::gamma(8) * distance;
+        (wi.dot(normal) * distance).abs() <= bound
+    }
 }
 
 impl Emitters {
@@ -167,7 +183,7 @@ impl Emitters {
     }
 
     /// Density with which [`World::sample_light`] picks the place of a shape that a ray met.
-    fn pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> Option<f32> {
+    fn pdf(&self, from: &Receiver, vertex: &Vertex) -> Option<f32> {
         let at = self.shapes.binary_search_by_key(&vertex.object, |shining| shining.shape.number).ok()?;
         let shining = self.shapes.get(at)?;
         let part = shining.parts.get(vertex.part as usize).copied().unwrap_or(0);
@@ -175,10 +191,15 @@ impl Emitters {
             return None;
         }
         let index = shining.first + part;
+        let way = vertex.surface.point - from.point;
+        let distance = way.length();
+        if from.is_coplanar(way / distance, distance, vertex.surface.normal) {
+            return None;
+        }
         let chance = self.chance(from, index) * self.near_chance();
         let pdf = || match self.finite.get(index as usize) {
             Some(Emitter::Area(area, _)) => area.pdf(from.point, vertex.surface.point),
-            Some(Emitter::Shape(_)) => shining.shape.pdf(from, ray, vertex),
+            Some(Emitter::Shape(_)) => shining.shape.pdf(from, vertex),
             _ => 0.0,
         };
         (chance > 0.0).then(|| chance * pdf())
@@ -211,6 +232,9 @@ impl World {
             Emitter::Lamp(number) => self.lamp_light(*number, to, rest, chance),
             Emitter::Area(area, shape) => {
                 let sample = area.sample(to.point, rest)?;
+                if to.is_coplanar(sample.wi, sample.distance, sample.normal) {
+                    return None;
+                }
                 let shape = &emitters.shapes.get(*shape as usize)?.shape;
                 let radiance = shape.radiance(&self.materials, to, sample.wi, sample.normal)?;
                 let origin = Origin::Shape(shape.number);
@@ -258,9 +282,10 @@ impl World {
         if chance > 0.0 { self.background.pdf(direction) * (chance * self.emitters.far_chance()) } else { 0.0 }
     }
 
-    /// Density per steradian with which [`World::sample_light`] picks, for the place `from`, where `ray` met `vertex`.
-    pub fn light_pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> f32 {
-        self.emitters.pdf(from, ray, vertex).unwrap_or(0.0)
+    /// Density per steradian with which [`World::sample_light`] picks, for the place `from`, the
+    /// point `vertex`, where a ray met an emitter.
+    pub fn light_pdf(&self, from: &Receiver, vertex: &Vertex) -> f32 {
+        self.emitters.pdf(from, vertex).unwrap_or(0.0)
     }
 }
 

@@ -92,7 +92,7 @@ mod tests {
         World::new(Vec::new(), MaterialTable::default(), suns.iter().map(sun), background)
     }
 
-    const TO: Receiver = Receiver { point: Vec3::ZERO, normal: Vec3::ZERO, time: 0.0 };
+    const TO: Receiver = Receiver { point: Vec3::ZERO, error: 0.0, normal: Vec3::ZERO, time: 0.0 };
 
     #[test]
     fn the_stronger_is_picked_more_often() {

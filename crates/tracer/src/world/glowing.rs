@@ -5,7 +5,7 @@ use super::standing::{Standing, standing};
 use super::{Level, Vertex};
 use crate::emitter::LightBounds;
 use crate::material::{Glow, MaterialId, MaterialTable, Sides, View};
-use crate::shape::AnyShape;
+use crate::shape::{AnyShape, SurfacePoint};
 use juggler_math::{Motion, Ray, Rgb, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -79,6 +79,9 @@ impl Glowing {
             return None;
         }
         let normal = transform.normal(sample.normal);
+        if to.is_coplanar(wi, distance, normal) {
+            return None;
+        }
         let radiance = self.radiance(materials, to, wi, normal)?;
         Some(met(Origin::Shape(self.number), wi, distance, radiance, pdf * chance, normal))
     }
@@ -96,14 +99,13 @@ impl Glowing {
         Some(materials.radiance(self.material, &view)).filter(|light| !light.is_black())
     }
 
-    /// Density per steradian with which [`Glowing::sample`] picks the place where `ray` met this shape.
-    pub fn pdf(&self, from: &Receiver, ray: &Ray, vertex: &Vertex) -> f32 {
+    /// Density per steradian with which [`Glowing::sample`] picks the point `vertex` of this shape.
+    pub fn pdf(&self, from: &Receiver, vertex: &Vertex) -> f32 {
         let transform = self.motion.at(from.time);
-        let local = transform.ray_to_local(&Ray { time: from.time, ..Ray::new(from.point, ray.direction) });
         let normal = (transform.matrix().transpose() * vertex.surface.normal).normalize_or(Vec3::Y);
         let point = transform.point_to_local(vertex.surface.point);
-        let length = local.direction.length();
-        let pdf = self.shape.pdf(local.origin, local.direction / length);
+        let pdf =
+            self.shape.pdf(transform.point_to_local(from.point), &SurfacePoint { point, normal, part: vertex.part });
         pdf * density(&transform, from.point, point, normal)
     }
 }

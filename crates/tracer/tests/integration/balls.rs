@@ -1,8 +1,9 @@
 //! Light by way of polished balls, which is asked for, against the same balls under a material that hides from the path
 //! tracer what they are, so that their light is met by chance only.
 
-use crate::probe::{Measured, Scene, looking, measure, path};
+use crate::probe::{Measured, Scene, camera, looking, measure, path, picture};
 use crate::skies::panorama;
+use juggler_math::testing::Random;
 use juggler_math::{Transform, Vec3};
 use juggler_tracer::camera::Shot;
 
@@ -22,7 +23,7 @@ fn lamp(scene: Scene, radius: f32, at: Vec3, radiance: f32) -> Scene {
     scene.with(&ball(radius), at, &format!(r#"{{"emissive": {{"radiance": {radiance}}}}}"#))
 }
 
-type Build = fn(bool) -> Scene;
+pub type Build = fn(bool) -> Scene;
 
 fn mirror(hidden: bool) -> Scene {
     let scene = Scene::floor().with(&ball(0.5), Vec3::new(0.8, 0.5, 0.0), &made_of(MIRROR, hidden));
@@ -83,11 +84,11 @@ fn room(hidden: bool) -> Scene {
     lamp(scene, 0.6, Vec3::new(0.2, 2.3, 0.0), 4.0)
 }
 
-fn look() -> Shot {
+pub fn look() -> Shot {
     looking(Vec3::new(-0.5, 0.4, 1.9), Vec3::new(0.0, 0.0, 0.05))
 }
 
-const SCENES: [(&str, Build); 7] = [
+pub const SCENES: [(&str, Build); 7] = [
     ("mirror", mirror),
     ("clear glass", clear),
     ("green glass", green),
@@ -137,5 +138,66 @@ fn lamps_without_a_size_are_asked_too() {
         assert!(point.mean > 1.03 * without.mean, "{material}: the ball throws nothing: {point:?} {without:?}");
         let off = (point.mean - small.mean) / small.mean;
         assert!(off.abs() < 0.01 + 3.0 * small.sigma / small.mean, "{material}: {point:?} {small:?}");
+    }
+}
+
+/// Balls of glass and metal over the floor: single ones, nested ones, overlapping ones and
+/// coincident ones, in any order.
+fn heap(count: usize, random: &mut Random, is_hidden: bool) -> Scene {
+    let mut balls: Vec<(Vec3, f32, &str)> = Vec::new();
+    while balls.len() < count {
+        let center = Vec3::new(random.range(-1.2, 1.2), random.range(0.4, 1.2), random.range(-1.2, 1.2));
+        let (radius, material) = (random.range(0.1, 0.4), if random.range(0.0, 1.0) < 0.7 { GLASS } else { MIRROR });
+        balls.push((center, radius, material));
+        match random.range(0.0, 4.0) as u32 {
+            0 => balls.push((center, radius, material)),
+            1 => balls.push((center, radius * random.range(0.3, 0.95), GLASS)),
+            2 => balls.push((center + random.unit_vector() * radius, radius, material)),
+            _ => (),
+        }
+    }
+    balls.truncate(count);
+    let mut order: Vec<(f32, _)> = balls.into_iter().map(|ball| (random.range(0.0, 1.0), ball)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let scene = order.into_iter().fold(Scene::floor(), |scene, (_, (center, radius, material))| {
+        scene.with(&ball(radius), center, &made_of(material, is_hidden))
+    });
+    lamp(scene, 1.5, Vec3::new(0.2, 4.0, 0.1), 3.0)
+}
+
+#[test]
+fn light_by_way_of_many_balls_is_neither_lost_nor_counted_twice() {
+    let options = path(r#""max_depth": 8"#);
+    let shot = camera(r#"{"orthographic": {"eye": [0, 0.01, 0], "look_at": [0, 0, 0], "up": [0, 0, 1], "height": 3}}"#);
+    for (seed, count) in (0..).zip([1, 2, 5, 16, 17, 18, 25, 40]) {
+        let seen = |is_hidden| {
+            let scene = heap(count, &mut Random::new(3450 + seed), is_hidden);
+            picture(&scene.world(), &shot, &*options, 512, 1)
+        };
+        let [asked, met] = [false, true].map(seen);
+        // The floor is lit unevenly: its pixels are compared one by one.
+        let differences: Vec<f64> = asked.iter().zip(&met).map(|(a, b)| f64::from(a.r) - f64::from(b.r)).collect();
+        let level = met.iter().map(|pixel| f64::from(pixel.r)).sum::<f64>() / met.len() as f64;
+        let Measured { mean, sigma } = Measured::of(&differences);
+        println!("{count}: {level} {mean} ± {sigma}");
+        assert!(sigma < 0.01 * level, "{count} balls: too noisy: {mean} ± {sigma} of {level}");
+        assert!(mean.abs() < 3.0 * sigma + 1e-4 * level, "{count} balls: {mean} ± {sigma} of {level}");
+    }
+}
+
+/// Balls in the same place, exactly and nearly, of the same material and of two; below which the
+/// floor shows their caustic.
+#[test]
+fn coincident_balls_bring_light_once() {
+    let at = Vec3::new(0.1, 0.6, 0.0);
+    let green = r#"{"dielectric": {"ior": 1.5, "medium": {"color": [0.4, 0.9, 0.5], "distance": 1}}}"#;
+    for (name, aside, second) in
+        [("the same", 0.0, GLASS), ("nearly the same", 3e-6, GLASS), ("two materials", 0.0, green)]
+    {
+        let build = |is_hidden| clear(is_hidden).with(&ball(0.5), at + Vec3::X * aside, &made_of(second, is_hidden));
+        let options = path(r#""max_depth": 10"#);
+        let [asked, met] = [false, true].map(|hidden| measure(&build(hidden).world(), &look(), &*options, 1024));
+        println!("{name}: {asked:?} {met:?}");
+        asked.equals(met, name);
     }
 }

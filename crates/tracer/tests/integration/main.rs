@@ -13,6 +13,7 @@ mod lights;
 mod limits;
 mod media;
 mod probe;
+mod rooms;
 mod skies;
 mod snippets;
 mod strategies;

@@ -1,10 +1,9 @@
 //! Light that comes by way of polished balls: asked for, and met by chance. Both share what both can find (Veach 1997,
 //! section 9.2.2), so that what only one of them finds is never lost, nor counted twice.
 
-use super::super::trail::power_heuristic;
 use super::super::{Chain, Emit, PathState, Stage};
 use super::surface::Seen;
-use super::{Path, dimension};
+use super::{Path, Sampling, dimension};
 use crate::bsdf::{BsdfSample, Scatter};
 use crate::manifold::{Bend, End, Way, bends, spread};
 use crate::medium::Interiors;
@@ -26,33 +25,9 @@ pub enum Met {
     Background,
 }
 
-/// The weight of light that a path has met along `ray`. `light` is the density with which it would have been asked
-/// straight, `bent` that with which a ball would have asked it, along a ray from its centre.
-pub fn weight(
-    world: &World,
-    path: &PathState,
-    ray: &Ray,
-    light: impl FnOnce() -> f32,
-    met: Met,
-    bent: impl FnOnce(&Receiver, &Ray) -> f32,
-) -> f32 {
-    let Chain { stage: Stage::Done(id), pdf, sine } = path.trail.chain else { return path.trail.weight(light) };
-    let Some((caster, way)) = world.caster(id) else { return 1.0 };
-    let center = caster.ball.center;
-    let (direction, to) = match met {
-        Met::Surface(place) => ((place - center).normalize_or_zero(), caster.ball.end(place)),
-        Met::Background => (ray.direction, Some(End::infinity(ray.direction))),
-    };
-    let from = path.trail.receiver(ray.time);
-    let (Some(start), Some(end)) = (caster.ball.end(from.point), to) else { return 1.0 };
-    let asked = bent(&from_center(caster, ray.time), &Ray { time: ray.time, ..Ray::new(center, direction) });
-    let asked = asked * spread(way, &start, &end, sine) * world.prospect(&from).chance(id);
-    if asked > 0.0 { power_heuristic(pdf, asked) } else { 1.0 }
-}
-
 /// A ball as what light comes to.
 fn from_center(caster: &Caster, time: f32) -> Receiver {
-    Receiver { point: caster.ball.center, normal: Vec3::ZERO, time }
+    Receiver { point: caster.ball.center, error: 0.0, normal: Vec3::ZERO, time }
 }
 
 /// Solid angle of a place along `seen` over that along `way`, but for the distance: 0 where they see different sides of
@@ -67,6 +42,34 @@ fn ratio(normal: Vec3, way: Vec3, seen: Vec3) -> f32 {
 }
 
 impl Path {
+    /// The weight of light that a path has met along `ray`. `light` is the density with which it
+    /// would have been asked straight, `bent` that with which a ball would have asked it, along a
+    /// ray from its centre.
+    pub fn met_weight(
+        &self,
+        world: &World,
+        path: &PathState,
+        ray: &Ray,
+        light: impl FnOnce() -> f32,
+        met: Met,
+        bent: impl FnOnce(&Receiver, &Ray) -> f32,
+    ) -> f32 {
+        let Chain { stage: Stage::Done(id), pdf, sine } = path.trail.chain else {
+            return path.trail.weight(self.sampling, light);
+        };
+        let Some((caster, way)) = world.caster(id) else { return 1.0 };
+        let center = caster.ball.center;
+        let (direction, to) = match met {
+            Met::Surface(place) => ((place - center).normalize_or_zero(), caster.ball.end(place)),
+            Met::Background => (ray.direction, Some(End::infinity(ray.direction))),
+        };
+        let from = path.trail.receiver(ray.time);
+        let (Some(start), Some(end)) = (caster.ball.end(from.point), to) else { return 1.0 };
+        let asked = bent(&from_center(caster, ray.time), &Ray { time: ray.time, ..Ray::new(center, direction) });
+        let asked = asked * spread(way, &start, &end, sine) * world.prospect(&from).chance(id);
+        if asked > 0.0 { self.sampling.bsdf_weight(pdf, asked) } else { 1.0 }
+    }
+
     /// Asks one light by way of one ball.
     pub fn ask_by_ball(&self, seen: &Seen, world: &World, path: &PathState, emit: &mut Emit) {
         let Some(prospect) = &seen.prospect else { return };
@@ -80,7 +83,8 @@ impl Path {
         let (Some(start), Some(end)) = (caster.ball.end(seen.surface.point), to) else { return };
         for bend in bends(way, &start, &end) {
             let asked = chance * light.pdf * spread(way, &start, &end, bend.sine);
-            seen.ask_along(&Asked { world, caster, way, light: &light, place, asked }, &bend, path, emit);
+            let asked = Asked { world, caster, way, light: &light, place, asked, sampling: self.sampling };
+            seen.ask_along(&asked, &bend, path, emit);
         }
     }
 
@@ -102,6 +106,7 @@ struct Asked<'a> {
     place: Vec3,
     /// Density per steradian of the way.
     asked: f32,
+    sampling: Sampling,
 }
 
 impl Asked<'_> {
@@ -116,7 +121,7 @@ impl Asked<'_> {
             let tilt = if normal == Vec3::ZERO { 0.0 } else { ratio(normal, wi, way.normalize_or_zero()) };
             return (tilt > 0.0).then_some((radiance, self.asked * tilt));
         };
-        let there = self.world.point_light(lamp, &Receiver { point: last, normal: Vec3::ZERO, time })?;
+        let there = self.world.point_light(lamp, &Receiver { point: last, error: 0.0, normal: Vec3::ZERO, time })?;
         Some((there.radiance * (way.length_squared() / (distance * distance)), self.asked))
     }
 
@@ -158,7 +163,7 @@ impl Seen<'_> {
         let thrown = radiance * scattered * ask.caster.throughput(ask.way, bend.sine);
         let group = ask.world.light_group(ask.light.origin);
         let legs = ask.legs(self.surface, bend, self.time);
-        emit.if_all_free(legs, thrown * ask.light.gain(asked, pdf, self.shade), group);
+        emit.if_all_free(legs, thrown * ask.light.gain(ask.sampling, asked, pdf, self.shade), group);
     }
 
     /// What a path knows of balls that goes on from here, `object`, as `sample` says, into the solids `inside`.
@@ -180,7 +185,7 @@ impl Seen<'_> {
                 return Chain { stage: stage.unwrap_or(Stage::Elsewhere), sine, ..chain };
             }
             Stage::Inside(id) if goes_through && inside.is_empty() => {
-                let is_same = world.caster(id).is_some_and(|(caster, _)| caster.object == object);
+                let is_same = world.caster(id).is_some_and(|(caster, _)| caster.is(object));
                 if is_same { Stage::Done(id) } else { Stage::Elsewhere }
             }
             _ => Stage::Elsewhere,

@@ -7,15 +7,17 @@
 //! {"path": {"max_depth": 16, "roulette_depth": 4}}
 //! ```
 
-use super::{Clamp, Emit, Integrator, PathState, Sight};
+use super::{Clamp, Emit, Integrator, PathState};
 use crate::world::{Receiver, Shadows, Vertex, World};
 use caustic::Met;
 use juggler_math::{Ray, Rgb, Vec2};
+pub use sampling::Sampling;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use surface::Seen;
 
 mod caustic;
+mod sampling;
 mod surface;
 mod volume;
 
@@ -74,6 +76,10 @@ pub struct Path {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 64))]
     pub light_samples: Option<u32>,
+    /// Strategy for light that a ray can hit: `mis` combines light samples and BSDF samples and has
+    /// the least noise; `light` and `bsdf` use one of them alone, for comparisons.
+    #[serde(skip_serializing_if = "Sampling::is_default")]
+    pub sampling: Sampling,
     /// The most that light on a way of up to two stretches may bring to a sample: its brightest channel is limited, its
     /// hue stays. Nothing for no limit. What this takes away is reported.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -95,6 +101,7 @@ impl Path {
         max_volume: None,
         roulette_depth: None,
         light_samples: None,
+        sampling: Sampling::Mis,
         clamp_direct: None,
         clamp_indirect: None,
     };
@@ -137,16 +144,12 @@ impl Integrator for Path {
         if shade.opacity < 1.0 && choice.y >= shade.opacity {
             return surface::pass(world, ray, path, vertex, emit);
         }
-        if emit.records() {
-            let (normal, albedo) = (shade.frame.normal, shade.albedo(-ray.direction));
-            let (is_smooth, scatter) = (shade.bsdf.is_specular(), shade.bsdf.scatter());
-            emit.see(&Sight { world, ray, vertex, normal, albedo, is_smooth, scatter });
-        }
+        emit.see_shaded(world, ray, vertex, &shade);
         if !shade.emission.is_black() {
-            let light = || world.light_pdf(&path.trail.receiver(ray.time), ray, vertex);
-            let bent = |to: &Receiver, way: &Ray| world.light_pdf(to, way, vertex) * caustic::tilt(way, ray, vertex);
+            let light = || world.light_pdf(&path.trail.receiver(ray.time), vertex);
+            let bent = |to: &Receiver, way: &Ray| world.light_pdf(to, vertex) * caustic::tilt(way, ray, vertex);
             let end = Met::Surface(vertex.surface.point);
-            let weight = caustic::weight(world, path, ray, light, end, bent);
+            let weight = self.met_weight(world, path, ray, light, end, bent);
             emit.add(shade.emission * weight, world.shape_group(vertex.object));
         }
         if path.depth + 1 >= self.max_depth {
@@ -155,7 +158,7 @@ impl Integrator for Path {
         self.limit(&mut shade.bsdf, path);
         let seen = Seen::new(world, ray, vertex, &shade, interior);
         if !seen.shade.bsdf.is_specular() {
-            seen.ask_lights(self.asked(world, path), world, path, emit);
+            seen.ask_lights(self.asked(world, path), self.sampling, world, path, emit);
             self.ask_by_ball(&seen, world, path, emit);
         }
         self.go_on(&seen, world, vertex.object, path, emit);
@@ -165,7 +168,7 @@ impl Integrator for Path {
         if !self.flies(world, ray, f32::INFINITY, path, emit) {
             emit.miss(ray);
             let light = || world.background_pdf(ray.direction);
-            let weight = caustic::weight(world, path, ray, light, Met::Background, |_, _| light());
+            let weight = self.met_weight(world, path, ray, light, Met::Background, |_, _| light());
             emit.add(world.background(ray) * weight, world.background_group());
         }
     }

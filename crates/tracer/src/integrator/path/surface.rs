@@ -1,8 +1,7 @@
 //! Paths at surfaces: what a light brings, and where to go on.
 
-use super::super::trail::power_heuristic;
 use super::super::{Chain, Counts, Emit, PathState, Trail};
-use super::{Path, dimension};
+use super::{Path, Sampling, dimension};
 use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
 use crate::medium::{InteriorId, Interiors};
@@ -58,8 +57,8 @@ pub fn around(world: &World, path: &PathState, interior: Option<InteriorId>) -> 
 impl Lighting {
     /// What its light counts for that was asked with the density `asked` and may have been met with the density `met`.
     #[inline]
-    pub fn gain(&self, asked: f32, met: f32, shade: &Shade) -> f32 {
-        let share = if self.can_be_met { power_heuristic(asked, met) } else { 1.0 };
+    pub fn gain(&self, sampling: Sampling, asked: f32, met: f32, shade: &Shade) -> f32 {
+        let share = if self.can_be_met { sampling.light_weight(asked, met) } else { 1.0 };
         let scale = if matches!(self.origin, Origin::Lamp(_)) { shade.lamp_scale } else { 1.0 };
         share * scale / asked
     }
@@ -84,7 +83,12 @@ impl<'a> Seen<'a> {
 
     /// As what light comes to.
     fn receiver(&self) -> Receiver {
-        Receiver { point: self.surface.point, normal: self.receiving_normal(), time: self.time }
+        Receiver {
+            point: self.surface.point,
+            error: self.surface.error,
+            normal: self.receiving_normal(),
+            time: self.time,
+        }
     }
 
     /// What is scattered, and the density with which a path goes on in that direction.
@@ -136,20 +140,20 @@ impl<'a> Seen<'a> {
     }
 
     /// What some lights bring.
-    pub fn ask_lights(&self, count: u16, world: &World, path: &PathState, emit: &mut Emit) {
+    pub fn ask_lights(&self, count: u16, sampling: Sampling, world: &World, path: &PathState, emit: &mut Emit) {
         let to = self.receiver();
         let sampler = path.sampler.at(dimension::LIGHT);
         for part in 0..u32::from(count) {
             let u = sampler.part(part, u32::from(count)).next_2d();
             if let Some(light) = world.sample_light(&to, u) {
                 let pdf = light.pdf * f32::from(count);
-                self.ask_light(&Lighting { pdf, ..light }, world, path, emit);
+                self.ask_light(&Lighting { pdf, ..light }, sampling, world, path, emit);
             }
         }
     }
 
     /// What a light brings that is picked with its density.
-    fn ask_light(&self, light: &Lighting, world: &World, path: &PathState, emit: &mut Emit) {
+    fn ask_light(&self, light: &Lighting, sampling: Sampling, world: &World, path: &PathState, emit: &mut Emit) {
         let wi = self.shade.frame.to_local(light.wi);
         if !self.agree(light.wi, wi) {
             return;
@@ -160,7 +164,7 @@ impl<'a> Seen<'a> {
         }
         let ray = self.surface.spawn_to(light.wi, light.distance, self.time);
         let inside = self.inside(path, wi);
-        let radiance = light.radiance * scattered * light.gain(light.pdf, pdf, self.shade);
+        let radiance = light.radiance * scattered * light.gain(sampling, light.pdf, pdf, self.shade);
         emit.if_visible_inside(ray, radiance, world.light_group(light.origin), inside);
     }
 
@@ -199,8 +203,8 @@ impl<'a> Seen<'a> {
         if sample.scatter == Scatter::Specular {
             return Trail { pdf: f32::INFINITY, ior_scale, inside, passed, scattered, chain, ..path.trail };
         }
-        let (from, normal) = (self.surface.point, self.receiving_normal());
-        Trail { from, normal, pdf: sample.pdf, asked, ior_scale, inside, passed, scattered, chain }
+        let Receiver { point: from, error, normal, .. } = self.receiver();
+        Trail { from, error, normal, pdf: sample.pdf, asked, ior_scale, inside, passed, scattered, chain }
     }
 }
 

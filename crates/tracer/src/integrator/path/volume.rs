@@ -1,6 +1,5 @@
 //! Paths in media: how far they come, what lights bring to where they are scattered.
 
-use super::super::trail::power_heuristic;
 use super::super::{Chain, Emit, PathState, Trail};
 use super::{Path, dimension};
 use crate::medium::HenyeyGreenstein;
@@ -33,10 +32,10 @@ impl Path {
     /// A path that came along `ray` is scattered where that now begins.
     fn scatter(&self, world: &World, ray: &Ray, path: &PathState, phase: HenyeyGreenstein, emit: &mut Emit) {
         let from = |direction| Ray { time: ray.time, ..Ray::new(ray.origin, direction) };
-        let to = Receiver { point: ray.origin, normal: juggler_math::Vec3::ZERO, time: ray.time };
+        let to = Receiver { point: ray.origin, error: 0.0, normal: juggler_math::Vec3::ZERO, time: ray.time };
         if let Some(light) = world.sample_light(&to, path.sampler.at(dimension::LIGHT).next_2d()) {
             let scattered = phase.eval(ray.direction.dot(light.wi));
-            let share = if light.can_be_met { power_heuristic(light.pdf, scattered) } else { 1.0 };
+            let share = if light.can_be_met { self.sampling.light_weight(light.pdf, scattered) } else { 1.0 };
             let shadow = from(light.wi).up_to(light.distance * SHORT_OF);
             let (radiance, group) = (light.radiance * (scattered * share / light.pdf), world.light_group(light.origin));
             emit.if_visible_inside(shadow, radiance, group, path.trail.inside);
@@ -47,6 +46,7 @@ impl Path {
         let pdf = phase.eval(ray.direction.dot(wi));
         let trail = Trail {
             from: to.point,
+            error: 0.0,
             normal: to.normal,
             pdf,
             asked: 1,

@@ -110,6 +110,7 @@ fn unprepared_shapes_do_not_panic() {
         let hit = shape.intersect(&ray).unwrap_or(crate::shape::Hit { t: 1.0, uv: juggler_math::Vec2::ZERO, part: 77 });
         let _ =
             (shape.surface(&ray, &hit), shape.bounds(), shape.area(), shape.sample(Vec3::Y, juggler_math::Vec2::ZERO));
-        let _ = (shape.pdf(Vec3::Y, Vec3::X), shape.triangles(), shape.heap_bytes(), shape.occludes(&ray));
+        let at = crate::shape::SurfacePoint { point: Vec3::X, normal: Vec3::X, part: 77 };
+        let _ = (shape.pdf(Vec3::Y, &at), shape.triangles(), shape.heap_bytes(), shape.occludes(&ray));
     }
 }

@@ -2,7 +2,8 @@
 
 use super::distance::distance;
 use super::*;
-use crate::shape::SurfaceSample;
+use crate::shape::{SurfacePoint, SurfaceSample};
+use crate::surface::Surface;
 use juggler_math::testing::z_test;
 use std::f32::consts::PI;
 
@@ -42,16 +43,17 @@ fn places(shape: &AnyShape, random: &mut Random) -> Vec<Vec3> {
     places
 }
 
-/// The sample's direction, and whether nothing of the shape itself is in the way.
-fn look(shape: &AnyShape, from: Vec3, sample: &SurfaceSample) -> (Vec3, bool) {
+/// Direction to the sample, and the point that a ray hits there unless the shape itself is in the
+/// way.
+fn look(shape: &AnyShape, from: Vec3, sample: &SurfaceSample) -> (Vec3, Option<SurfacePoint>) {
     let way = sample.point.as_dvec3() - from.as_dvec3();
     let direction = way.normalize().as_vec3();
     let ray = Ray::new(from, direction);
-    let found = shape.intersect(&ray).map(|hit| shape.surface(&ray, &hit));
+    let found = shape.intersect(&ray).map(|hit| (shape.surface(&ray, &hit), hit.part));
+    let found = found.map(|(Surface { point, normal, .. }, part)| SurfacePoint { point, normal, part });
     let near = 3e-3 * ball(shape).1 + 1e-5 * from.abs().max_element();
-    let same =
-        |s: crate::surface::Surface| s.point.distance(sample.point) < near && s.normal.dot(sample.normal) > 0.999;
-    (direction, found.is_some_and(same))
+    let same = |s: &SurfacePoint| s.point.distance(sample.point) < near && s.normal.dot(sample.normal) > 0.999;
+    (direction, found.filter(same))
 }
 
 #[test]
@@ -67,13 +69,13 @@ fn samples_lie_on_the_surface_and_have_the_density_of_their_direction() {
                 let rounding = f64::from(f32::EPSILON * (4.0 * radius + 2.0 * sample.point.length()));
                 assert!(off <= rounding, "{shape:?} {from}: {off}");
                 assert!((sample.normal.length() - 1.0).abs() < 1e-6 && sample.pdf > 0.0 && sample.pdf.is_finite());
-                let (direction, visible) = look(&shape, from, &sample);
-                hidden += usize::from(!visible);
+                let (direction, found) = look(&shape, from, &sample);
+                hidden += usize::from(found.is_none());
                 // Seen edge-on, a density changes from one float to the next.
                 let cosine = direction.dot(sample.normal).abs();
-                if visible && cosine > 0.05 {
+                if let Some(at) = found.filter(|_| cosine > 0.05) {
                     seen += 1;
-                    let pdf = shape.pdf(from, direction);
+                    let pdf = shape.pdf(from, &at);
                     let gap = (pdf / sample.pdf - 1.0).abs();
                     let tolerance = (1e-4 + 1e-6 * from.distance(sample.point) / thickness(&shape)) / (cosine * cosine);
                     assert!(gap < tolerance, "{shape:?} {from}: {pdf} {sample:?}");
@@ -124,8 +126,8 @@ fn densities_integrate_to_the_solid_angle() {
 /// A sample's direction and what it stands for: nothing when the shape hides it from itself.
 fn weigh(shape: &AnyShape, from: Vec3, u: juggler_math::Vec2) -> (Vec3, f32) {
     let Some(sample) = shape.sample(from, u) else { return (Vec3::X, 0.0) };
-    let (direction, visible) = look(shape, from, &sample);
-    (direction, if visible { 1.0 / sample.pdf } else { 0.0 })
+    let (direction, found) = look(shape, from, &sample);
+    (direction, if found.is_some() { 1.0 / sample.pdf } else { 0.0 })
 }
 
 fn compare(a: &[(Vec3, f32)], b: &[(Vec3, f32)], function: fn(Vec3) -> f32) -> Result<(), String> {

@@ -17,7 +17,7 @@ use super::Derivatives;
 use super::arithmetic::within_floats;
 use super::facet::Facet;
 use super::solid_angle::{area_pdf, area_sample, pick};
-use super::{Hit, InvalidShape, Shape, SurfaceSample, check};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
@@ -208,8 +208,8 @@ impl Shape for Mesh {
         area_sample(from, point, normal, prepared.area())
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        area_pdf(self, from, direction, self.area())
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
+        area_pdf(from, at, self.area())
     }
 
     fn triangles(&self) -> usize {

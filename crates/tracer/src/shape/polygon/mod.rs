@@ -14,7 +14,7 @@
 use super::Derivatives;
 use super::arithmetic::{double, in_range, rounded_surface};
 use super::solid_angle::{area_pdf, area_sample, pick};
-use super::{Hit, InvalidShape, Shape, SurfaceSample};
+use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample};
 use crate::surface::Surface;
 use juggler_math::{Aabb, DVec3, Ray, Vec2, Vec3, warp};
 use outline::Outline;
@@ -86,8 +86,8 @@ impl Shape for Polygon {
         area_sample(from, point.as_vec3(), self.outline.normal.as_vec3(), self.area())
     }
 
-    fn pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        area_pdf(self, from, direction, self.area())
+    fn pdf(&self, from: Vec3, at: &SurfacePoint) -> f32 {
+        area_pdf(from, at, self.area())
     }
 
     fn heap_bytes(&self) -> usize {
