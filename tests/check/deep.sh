@@ -1,7 +1,7 @@
 # `check.sh deep`: what takes too long for every change. Each part takes an hour at most.
 # shellcheck shell=bash
 
-deep_parts=(dist matrix noise rays light memory kills web cluster)
+deep_parts=(dist matrix noise rays memory kills web cluster)
 
 check_deep() {
   local part
@@ -52,9 +52,6 @@ deep_rays() {
   JUGGLER_RAYS=1_000_000 cargo test --release --locked -p juggler-bvh
   JUGGLER_HITS=1000 cargo test --release --locked -p juggler-tracer --lib precision
 }
-
-# Furnaces of every shape that emits, at all albedos and by all sampling strategies.
-deep_light() { JUGGLER_LIGHT=all cargo test --release --locked -p juggler-tracer --test integration -- rooms::; }
 
 # What `--max-memory` promises, by an optimized program: the check itself asks an unoptimized one.
 deep_memory() { cargo test --release --locked -p juggler-cli --test program -- memory::; }

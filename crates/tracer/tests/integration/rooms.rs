@@ -217,7 +217,7 @@ impl Case<'_> {
 
 /// Whether all albedos and strategies are asked for; in the check it is one of each.
 fn is_deep() -> bool {
-    std::env::var_os("JUGGLER_LIGHT").is_some()
+    std::env::var_os("JUGGLER_FURNACES").is_some()
 }
 
 #[test]
