@@ -31,6 +31,18 @@ fn the_skeleton_compiles() -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Metals stand in the schema by all names that scenes may give them, and aluminum in both spellings.
+#[test]
+fn scenes_name_metals() {
+    let metals = ["aluminum", "aluminium", "brass", "chromium", "cobalt", "copper", "gold", "iron", "nickel"];
+    for metal in metals.into_iter().chain(["platinum", "silver", "titanium", "tungsten", "zinc"]) {
+        let sphere = format!(r#"{{"shape": "sphere", "material": {{"conductor": {{"metal": "{metal}"}}}}}}"#);
+        let scene = scene(&format!(r#"{{"version": 1, "objects": [{sphere}]}}"#));
+        assert!(scene.check().list().is_empty() && scene.compile().is_ok(), "{metal}: {}", scene.check());
+        assert!(reference().contains(&format!("- `\"{metal}\"`: ")), "the reference does not list {metal}");
+    }
+}
+
 /// The published files say what this program does.
 #[test]
 fn schema_and_reference_are_current() {

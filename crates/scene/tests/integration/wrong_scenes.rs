@@ -73,6 +73,7 @@ wrong! {
     type_as_a_key: object(r#"{"shape": {"type": "sphere", "radius": 1}}"#);
     kind_that_needs_more: object(r#"{"shape": "polygon"}"#);
     unknown_material: "{\"version\": 1, \"materials\": {\"gold\": {\"phong\": {}}},\n \"objects\": [{\"shape\": \"sphere\", \"material\": \"glod\"}]}";
+    unknown_metal: object(r#"{"shape": "sphere", "material": {"conductor": {"metal": "alumnium"}}}"#);
     unknown_texture: with(r#""materials": {"red": {"phong": {"diffuse": "marble"}}}"#);
     unknown_texture_in_a_texture: with(r#""textures": {"planks": {"wood": {"light": "plancks"}}}"#);
     texture_circle: with(r#""textures": {"a": {"mix": {"b": "b"}}, "b": {"ramp": {"stops": [{"position": 0, "color": "a"}]}}}"#);

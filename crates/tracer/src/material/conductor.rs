@@ -14,14 +14,14 @@ use crate::bsdf::metals::Metal;
 use crate::bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
 use crate::texture::{Input, Lookup, Slot, TextureTable};
 use juggler_math::Rgb;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, json_schema};
 use serde::{Deserialize, Serialize};
 
 /// A metal, polished or rough, the same from both sides.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Conductor {
-    /// A metal by name, whose measured indices are used.
+    /// A metal by name, such as `gold`, in place of `eta` and `k` or `reflectance`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub metal: Option<MetalName>,
     /// Index of refraction per channel, together with `k`, in place of a name.
@@ -49,24 +49,51 @@ pub struct Conductor {
     pub energy_compensation: bool,
 }
 
-/// A metal whose indices have been measured.
+/// A metal by name. Its index of refraction per channel is derived from a measured table. Below
+/// stand the table's source and the reflectance at normal incidence: the table's spectral
+/// reflectance in air, integrated to linear sRGB (CIE 1931, D65) and clamped to 0..1. Towards
+/// grazing angles the reflectance follows the integrated spectral curve within 0.01 up to 80
+/// degrees. Gold's red lies outside of sRGB, so it is clamped, and rendered as 0.996.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-#[allow(missing_docs, reason = "their names say it")]
+#[schemars(transform = with_aluminium)]
 pub enum MetalName {
-    Aluminium,
+    /// Rakić (1995): 0.907, 0.916, 0.922.
+    #[serde(alias = "aluminium")]
+    Aluminum,
+    /// Querry (1985), 70 % copper and 30 % zinc: 0.910, 0.778, 0.423.
     Brass,
+    /// Johnson and Christy (1974): 0.550, 0.556, 0.554.
     Chromium,
+    /// Johnson and Christy (1974): 0.683, 0.655, 0.616.
     Cobalt,
+    /// Johnson and Christy (1972): 0.932, 0.623, 0.522.
     Copper,
+    /// Johnson and Christy (1972): 1.000, 0.728, 0.365.
     Gold,
+    /// Johnson and Christy (1974): 0.530, 0.513, 0.494.
     Iron,
+    /// Johnson and Christy (1974): 0.697, 0.640, 0.563.
     Nickel,
+    /// Rakić, Djurišić, Elazar and Majewski (1998), Brendel-Bormann model: 0.679, 0.639, 0.584.
     Platinum,
+    /// Johnson and Christy (1972): 0.989, 0.984, 0.978.
     Silver,
+    /// Johnson and Christy (1974): 0.619, 0.579, 0.542.
     Titanium,
+    /// Rakić, Djurišić, Elazar and Majewski (1998), Brendel-Bormann model: 0.506, 0.497, 0.477.
     Tungsten,
+    /// Werner, Glantschnig and Ambrosch-Draxl (2009): 0.875, 0.869, 0.855.
     Zinc,
+}
+
+/// Adds the British spelling of aluminum, which serde accepts as an alias, to the schema.
+fn with_aluminium(schema: &mut Schema) {
+    if let Some(names) = schema.get_mut("oneOf").and_then(|names| names.as_array_mut()) {
+        let description = "Another spelling of `aluminum`.";
+        let name = json_schema!({"description": description, "type": "string", "const": "aluminium"});
+        names.push(name.to_value());
+    }
 }
 
 impl Default for Conductor {
@@ -188,7 +215,7 @@ impl CompiledConductor {
 impl MetalName {
     fn name(self) -> &'static str {
         match self {
-            Self::Aluminium => "aluminium",
+            Self::Aluminum => "aluminum",
             Self::Brass => "brass",
             Self::Chromium => "chromium",
             Self::Cobalt => "cobalt",
@@ -204,7 +231,7 @@ impl MetalName {
         }
     }
 
-    /// As measured.
+    /// Fresnel reflectance of the metal in air.
     fn fresnel(self) -> Fresnel {
         Metal::named(self.name()).map_or(Fresnel::WHITE, Metal::fresnel)
     }
@@ -224,5 +251,32 @@ impl Conductor {
         };
         let brushed = Self { anisotropy: 0.8.into(), roughness: Input::Texture("tiles".into()), ..Self::default() };
         vec![Self::default(), gold, indices, brushed]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::metals::METALS;
+
+    fn parse(name: &str) -> Result<MetalName, serde_json::Error> {
+        serde_json::from_value(name.into())
+    }
+
+    #[test]
+    fn every_metal_has_a_name_in_scenes() {
+        for metal in METALS {
+            let name = parse(metal.name).unwrap();
+            assert_eq!(name.fresnel(), metal.fresnel());
+            assert_eq!(serde_json::to_value(name).unwrap(), metal.name);
+        }
+        assert!(parse("unobtainium").is_err() && parse("Gold").is_err());
+    }
+
+    #[test]
+    fn aluminum_may_be_spelled_aluminium() {
+        let both = ["aluminum", "aluminium"].map(|name| parse(name).unwrap());
+        assert_eq!(both, [MetalName::Aluminum; 2]);
+        assert_eq!(serde_json::to_value(both[1]).unwrap(), "aluminum");
     }
 }
