@@ -18,3 +18,4 @@ mod snippets;
 mod strategies;
 mod threads;
 mod views;
+mod white_worlds;
