@@ -1,7 +1,7 @@
 # `check.sh deep`: what takes too long for every change. Each part takes an hour at most.
 # shellcheck shell=bash
 
-deep_parts=(dist matrix noise rays memory kills web cluster)
+deep_parts=(dist matrix noise rays furnaces memory kills web cluster)
 
 check_deep() {
   local part
@@ -51,6 +51,11 @@ deep_noise() { JUGGLER_NOISE=all cargo test --release --locked -p juggler-golden
 deep_rays() {
   JUGGLER_RAYS=1_000_000 cargo test --release --locked -p juggler-bvh
   JUGGLER_HITS=1000 cargo test --release --locked -p juggler-tracer --lib precision
+}
+
+# White furnaces over whole grids of roughness, anisotropy and index of refraction.
+deep_furnaces() {
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration white_worlds
 }
 
 # What `--max-memory` promises, by an optimized program: the check itself asks an unoptimized one.

@@ -2,17 +2,23 @@
 //! Torrance 2007) with [GGX](super::ggx) normals and Fresnel's equations.
 //!
 //! [`Dielectric::compensated`] adds what is scattered more than once between microfacets (after Kulla and Conty
-//! 2017). With L(μ) what single scattering loses, its mean L̄, and T̄ the mean of what it transmits, each for the side of
-//! the direction, light that is lost comes out on its own side as (1 - b) L(μo) L(μi) / (π L̄), and on the other as
-//! c T̄o Lo(μo) Li(μi) / (π L̄o L̄i), where b = c T̄ / L̄ on each side. As T̄o = η² T̄i (with η the index on the side of i over
+//! 2017). With L(w) what single scattering loses, its mean L̄, and T̄ the mean of what it transmits, each for the side of
+//! the direction, light that is lost leaves on its own side as (1 - b) L(wo) L(wi) / (π L̄), and on the other as
+//! c T̄o Lo(wo) Li(wi) / (π L̄o L̄i), where b = c T̄ / L̄ on each side. As T̄o = η² T̄i (with η the index on the side of i over
 //! that on the side of o), that is reciprocal for any c; we take the largest that gives neither side more than what
-//! it transmits of what it scatters once. Round surfaces are white within 0.02, but for indices within 3 % of each other;
-//! what brushed ones miss says `energy/stretched.rs`.
+//! it transmits of what it scatters once. L comes from [tables](super::energy::InterfaceLoss) for round and stretched surfaces.
+//!
+//! Sampling follows the light: a visible normal reflects or refracts, and the direction is taken with probability G2 / G1;
+//! otherwise, that is with the very probability L(wo), one is drawn in proportion to L(wi) cos θi. Samples of a white interface
+//! so carry a weight of 1, whatever the tables miss: no energy is gained or lost along a path, and none of its weights grow.
+//! Values and densities know L from the tables only, which are within 0.002 of it for plain glass. Under a thin film, whose share
+//! of reflection no table knows, L is taken to be that of the plain interface.
 
+use super::energy::{self, InterfaceLoss, Scramble, Side};
 use super::ggx::Ggx;
-use super::lobe::{Deltas, delta, one_of_two, share_of_first};
-use super::{BsdfSample, Film, Scatter, choose, energy, fresnel};
-use juggler_math::{Rgb, Vec2, Vec3, warp};
+use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
+use super::{BsdfSample, Film, Scatter, choose, fresnel};
+use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
 /// Glass, water.
@@ -26,7 +32,16 @@ pub struct Dielectric {
     pub transmission: Rgb,
     /// A thin film on it, seen from above, and how much of it that covers.
     pub film: Option<(Film, f32)>,
-    compensated: bool,
+    compensation: Option<Compensation>,
+}
+
+/// Scattering more than once, on average over directions; from above, and from below.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Compensation {
+    /// L̄.
+    lost: [f32; 2],
+    /// b: how much of what is lost comes out on the other side.
+    through: [f32; 2],
 }
 
 /// One direction's view of the border: everything is mirrored so that `wo` is above.
@@ -42,13 +57,19 @@ struct View {
 /// Scattering more than once, of one `wo`.
 #[derive(Clone, Copy)]
 struct Multiple {
-    /// L(μo): also the probability.
+    loss: InterfaceLoss,
+    /// The side of `wo`, and the other one.
+    sides: [Side; 2],
+    /// L(wo): also the probability.
     lost: f32,
     /// b: how much of it comes out on the other side.
     through: f32,
     /// L̄ on the side of `wo`, and on the other.
     average: [f32; 2],
 }
+
+/// The mean loss below which an interface needs no compensation.
+const LEAST_LOSS: f32 = 1e-5;
 
 impl Dielectric {
     /// An index of refraction closer to 1 than this counts as smooth, however rough: directions of light that
@@ -60,13 +81,36 @@ impl Dielectric {
     pub fn new(ior: f32, alpha: Vec2) -> Self {
         let ior = if ior > 0.0 && ior.is_finite() { ior } else { 1.0 };
         let ggx = if (ior - 1.0).abs() < Self::NO_BORDER { Ggx::isotropic(0.0) } else { Ggx::new(alpha) };
-        Self { ggx, ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, film: None, compensated: false }
+        Self { ggx, ior, reflection: Rgb::WHITE, transmission: Rgb::WHITE, film: None, compensation: None }
     }
 
     /// With all scattering among its microfacets.
     #[inline]
     pub fn compensated(ior: f32, alpha: Vec2) -> Self {
-        Self { compensated: true, ..Self::new(ior, alpha) }
+        let single = Self::new(ior, alpha);
+        Self { compensation: single.averages(), ..single }
+    }
+
+    fn averages(&self) -> Option<Compensation> {
+        if self.is_smooth() {
+            return None;
+        }
+        let loss = InterfaceLoss::new(self.ggx, self.ior);
+        let [above, below] = [self.ior, 1.0 / self.ior].map(|ior| loss.mean(Side::of(ior)));
+        if above.min(below) < LEAST_LOSS {
+            return None;
+        }
+        // What goes through on average, from the side of the larger cone, and by reciprocity the other way.
+        let (outer, dense) = if self.ior > 1.0 { (above, self.ior) } else { (below, 1.0 / self.ior) };
+        let outwards = (1.0 - energy::dielectric_mirrored_average(self.ggx.mean_alpha(), dense) - outer).max(0.0);
+        let inwards = outwards / (dense * dense);
+        let [from_above, from_below] = if self.ior > 1.0 { [outwards, inwards] } else { [inwards, outwards] };
+        // The largest c that gives neither side more than what it transmits of what it scatters once.
+        let c = (above / (1.0 - above)).min(below / (1.0 - below));
+        Some(Compensation {
+            lost: [above, below],
+            through: [(c * from_above / above).min(1.0), (c * from_below / below).min(1.0)],
+        })
     }
 
     /// The same in other colours.
@@ -105,33 +149,26 @@ impl Dielectric {
         View { wo, ior, multiple: self.multiple(wo, ior) }
     }
 
-    /// How often a microfacet that mirrors this share is to mirror.
+    /// How often a microfacet that mirrors this share is to mirror: as often as Fresnel's equations say, so that what is lost is
+    /// L(wo), or without compensation by what each direction carries.
     #[inline]
     fn chance(&self, share: Rgb) -> f32 {
+        if self.compensation.is_some() {
+            return sum(share) * (1.0 / 3.0);
+        }
         share_of_first(self.reflection * share, self.transmission * (Rgb::WHITE - share))
     }
 
-    /// L of light along `w`, for the index behind the border over that in front.
-    fn lost(&self, w: Vec3, ior: f32) -> f32 {
-        energy::border_lost(self.ggx, w, ior)
-    }
-
+    /// Scattering more than once of light along `wo`, which is turned up; `ior` is the index behind over in front of it.
+    #[inline]
     fn multiple(&self, wo: Vec3, ior: f32) -> Option<Multiple> {
-        if !self.compensated {
-            return None;
-        }
-        let here = energy::border_average(self.ggx, ior);
-        let there = energy::border_average(self.ggx, 1.0 / ior);
-        // What goes through on average, from the side of the larger cone, and by reciprocity the other way.
-        let (outer, dense) = if ior > 1.0 { (here, ior) } else { (there, 1.0 / ior) };
-        let through = (1.0 - outer.mirrored - outer.lost).max(0.0);
-        let through = if ior > 1.0 { through } else { through / (dense * dense) };
-        let average = [here.lost, there.lost];
-        if average.contains(&0.0) {
-            return None;
-        }
-        let c = (average[0] / (1.0 - average[0])).min(average[1] / (1.0 - average[1]));
-        Some(Multiple { lost: self.lost(wo, ior), through: (c * through / average[0]).min(1.0), average })
+        let Compensation { lost: [above, below], through } = self.compensation?;
+        let loss = InterfaceLoss::new(self.ggx, ior);
+        let sides = [Side::of(ior), Side::of(1.0 / ior)];
+        let is_above = ior == self.ior;
+        let average = if is_above { [above, below] } else { [below, above] };
+        let through = through[usize::from(!is_above)];
+        Some(Multiple { loss, sides, lost: loss.at(sides[0], wo), through, average })
     }
 
     /// f |cos θi|, and the density per steradian.
@@ -149,16 +186,16 @@ impl Dielectric {
         let (single, pdf) = if wi.z > 0.0 {
             let facing = self.ggx.mirror(view.wo, wi);
             let share = self.share(facing.cos, view.ior);
-            (self.reflection * share * facing.value, facing.pdf * self.chance(share))
+            let pdf = if view.multiple.is_some() { facing.value } else { facing.pdf };
+            (self.reflection * share * facing.value, pdf * self.chance(share))
         } else {
             self.refracted(view, wi)
         };
         match &view.multiple {
             None => (single, pdf),
             Some(multiple) => {
-                let (more, share) = self.eval_multiple(view, multiple, wi);
-                let cosine = wi.z.abs() * FRAC_1_PI;
-                (single + more * cosine, pdf * (1.0 - multiple.lost) + cosine * share * multiple.lost)
+                let (more, density) = self.eval_multiple(view, multiple, wi);
+                (single + more, pdf + density)
             }
         }
     }
@@ -178,25 +215,26 @@ impl Dielectric {
         let (so, si, zi) = (self.ggx.stretch(wo), self.ggx.stretch(wi), -wi.z);
         // D |o·m| |i·m| / |m|²: what solid angle of normals one of directions is.
         let common = 2.0 * self.ggx.density(m) * o * i / (squared * squared);
-        let value = self.transmission * (Rgb::WHITE - share) * (common * zi / (so * zi + si * wo.z));
-        (value, common * ior * ior / (wo.z + so) * (1.0 - self.chance(share)))
+        let scattered = zi / (so * zi + si * wo.z);
+        let value = self.transmission * (Rgb::WHITE - share) * (common * scattered);
+        let picked = if view.multiple.is_some() { scattered } else { 1.0 / (wo.z + so) };
+        (value, common * ior * ior * picked * (1.0 - self.chance(share)))
     }
 
-    /// What is scattered more than once, but for cosine and π: and the probability of that side.
+    /// What is scattered more than once, and its density.
     fn eval_multiple(&self, view: &View, multiple: &Multiple, wi: Vec3) -> (Rgb, f32) {
-        let Multiple { lost, through, average } = *multiple;
-        if wi.z > 0.0 {
-            let out = self.lost(wi, view.ior) / average[0];
-            (self.reflection * ((1.0 - through) * lost * out), 1.0 - through)
+        let Multiple { loss, sides, lost, through, average } = *multiple;
+        let (side, mean, color, share, scale) = if wi.z > 0.0 {
+            (sides[0], average[0], self.reflection, 1.0 - through, 1.0)
         } else {
-            let out = self.lost(wi, 1.0 / view.ior) / average[1];
-            (self.transmission * (through * lost * out / (view.ior * view.ior)), through)
-        }
+            (sides[1], average[1], self.transmission, through, view.ior * view.ior)
+        };
+        let density = share * lost * loss.at(side, wi) / mean * (wi.z.abs() * FRAC_1_PI);
+        (color * (density / scale), density)
     }
 
     /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether it mirrors or refracts, as often as Fresnel's
-    /// equations say of it (PBR 4th ed., section 9.7.2). So what is scattered once carries the energy G2 / G1, at
-    /// most 1. What is scattered more often is picked by the cosine, and carries more than 1 at grazing angles.
+    /// equations say of it (PBR 4th ed., section 9.7.2). Without compensation, the sample carries the energy G2 / G1.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         if wo.z == 0.0 {
@@ -218,32 +256,31 @@ impl Dielectric {
     }
 
     fn pick(&self, view: &View, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
-        let mut x = u.x;
-        if let Some(multiple) = &view.multiple {
-            let (is_multiple, rest) = choose(x, multiple.lost);
-            x = rest;
-            if is_multiple {
-                let wi = warp::cosine_hemisphere(Vec2::new(x, u.y));
-                let wi = if choice < multiple.through { -wi } else { wi };
-                return (wi.z != 0.0).then_some((wi, Scatter::Diffuse));
-            }
-        }
-        let (m, _) = self.ggx.sample(view.wo, self.ggx.stretch(view.wo), Vec2::new(x, u.y));
+        let so = self.ggx.stretch(view.wo);
+        let (m, _) = self.ggx.sample(view.wo, so, u);
         let share = self.share(view.wo.dot(m), view.ior);
-        let (wi, is_there) = if choice < self.chance(share) {
-            let wi = fresnel::reflect(view.wo, m);
-            (wi, wi.z > 0.0)
+        let (is_reflected, rest) = choose(choice, self.chance(share));
+        let once = if is_reflected {
+            Some(fresnel::reflect(view.wo, m)).filter(|wi| wi.z > 0.0)
         } else {
-            let wi = fresnel::refract(view.wo, m, 1.0 / view.ior)?;
-            (wi, wi.z < 0.0)
+            fresnel::refract(view.wo, m, 1.0 / view.ior).filter(|wi| wi.z < 0.0)
         };
-        is_there.then_some((wi, Scatter::Glossy))
+        let Some(multiple) = &view.multiple else { return once.map(|wi| (wi, Scatter::Glossy)) };
+        // Take the direction with probability G2 / G1.
+        let taken = once.filter(|wi| rest < self.ggx.unmasked(view.wo.z, so, wi.z.abs(), self.ggx.stretch(*wi)));
+        if let Some(wi) = taken {
+            return Some((wi, Scatter::Glossy));
+        }
+        let mut random = Scramble::new(u, choice);
+        let is_through = random.unit() < multiple.through;
+        let wi = multiple.loss.sample(multiple.sides[usize::from(is_through)], &mut random);
+        Some((if is_through { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }, Scatter::Diffuse))
     }
 
     /// The two deltas of a smooth border, mirrored and refracted.
     fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
         let ior = self.ior_from(wo);
-        let share = if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(wo.z.abs(), ior) };
+        let share = self.smooth_share(wo.z.abs(), ior);
         let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
         let (wi, through) = match fresnel::refract(wo, Vec3::Z, 1.0 / ior) {
             Some(wi) => (wi, (Rgb::WHITE - share) / (ior * ior)),
@@ -257,18 +294,35 @@ impl Dielectric {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
-        let (ior, cos, alpha) = (self.ior_from(wo), wo.z.abs(), self.ggx.mean_alpha());
         if self.is_smooth() {
-            let share = if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) };
+            let share = self.smooth_share(wo.z.abs(), self.ior_from(wo));
             return self.reflection * share + self.transmission * (Rgb::WHITE - share);
         }
-        let mut mirrored = energy::dielectric_mirrored(cos, alpha, ior);
-        let mut through = 1.0 - mirrored - energy::dielectric_loss(self.ggx.round_cos(wo), alpha, ior);
-        if let Some(Multiple { lost, through: share, .. }) = self.multiple(wo, ior) {
-            mirrored += lost * (1.0 - share);
-            through += lost * share;
-        }
+        let [mirrored, through] = self.parts(wo);
         self.reflection * mirrored + self.transmission * through
+    }
+
+    /// The shares of light along `wo` that are mirrored and that go through, but for their colors.
+    pub(super) fn parts(&self, wo: Vec3) -> [f32; 2] {
+        let (ior, cos) = (self.ior_from(wo), wo.z.abs());
+        if self.is_smooth() {
+            let share = sum(self.smooth_share(cos, ior)) / 3.0;
+            return [share, 1.0 - share];
+        }
+        let up = Vec3::new(wo.x, wo.y, cos);
+        let mirrored = energy::dielectric_mirrored(cos, self.ggx.mean_alpha(), ior);
+        let multiple = self.multiple(up, ior);
+        let lost = multiple.map_or_else(|| InterfaceLoss::new(self.ggx, ior).at(Side::of(ior), up), |all| all.lost);
+        let through = (1.0 - mirrored - lost).max(0.0);
+        match multiple {
+            Some(Multiple { lost, through: share, .. }) => [mirrored + lost * (1.0 - share), through + lost * share],
+            None => [mirrored, through],
+        }
+    }
+
+    #[inline]
+    fn smooth_share(&self, cos: f32, ior: f32) -> Rgb {
+        if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) }
     }
 
     /// Mirrored and refracted, if it is smooth; not those of no weight.

@@ -103,15 +103,6 @@ impl Ggx {
         if self.is_round() { 1.0 } else { self.x.min(self.y) / self.x.max(self.y) }
     }
 
-    /// How closely `w` goes along the rougher axis: 1, down to 0 at 45 degrees and beyond.
-    #[inline]
-    pub fn along_rougher(self, w: Vec3) -> f32 {
-        let (x2, y2) = (w.x * w.x, w.y * w.y);
-        let apart = if self.x > self.y { x2 - y2 } else { y2 - x2 };
-        let cos = (apart / (x2 + y2).max(f32::MIN_POSITIVE)).max(0.0);
-        cos * cos
-    }
-
     /// s(w), see above.
     #[inline]
     pub fn stretch(self, w: Vec3) -> f32 {
@@ -160,6 +151,13 @@ impl Ggx {
             return None;
         }
         Some((wi, Self::facing(wo.z, wi.z, so, self.stretch(wi), cos, density)))
+    }
+
+    /// G2 / G1(o): the share of what a visible normal scatters that no other microfacet stops, from the cosines and
+    /// stretched lengths s(w) of both directions.
+    #[inline]
+    pub fn unmasked(self, zo: f32, so: f32, zi: f32, si: f32) -> f32 {
+        zi * (zo + so) / (so * zi + si * zo).max(f32::MIN_POSITIVE)
     }
 
     #[inline]

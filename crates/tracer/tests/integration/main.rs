@@ -19,3 +19,4 @@ mod snippets;
 mod strategies;
 mod threads;
 mod views;
+mod white_worlds;

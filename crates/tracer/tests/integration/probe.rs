@@ -186,6 +186,22 @@ pub fn picture(
     samples: u32,
     seed: u64,
 ) -> Vec<juggler_math::Rgb> {
+    pixels(world, camera, integrator, EDGE, (samples, seed))
+}
+
+/// Red of all pixels of a square picture.
+pub fn square(world: &World, camera: &AnyCamera, integrator: &dyn Integrator, edge: u32, samples: u32) -> Vec<f64> {
+    let camera: Shot = camera.project(UVec2::splat(edge)).unwrap().into();
+    pixels(world, &camera, integrator, edge, (samples, 1)).iter().map(|pixel| f64::from(pixel.r)).collect()
+}
+
+fn pixels(
+    world: &World,
+    camera: &Shot,
+    integrator: &dyn Integrator,
+    edge: u32,
+    (samples, seed): (u32, u64),
+) -> Vec<juggler_math::Rgb> {
     let (filter, pattern) =
         (read::<AnyFilter>(r#"{"box": {}}"#).filter(samples), read::<AnySampler>(r#"{"sobol": {}}"#));
     let job = Job {
@@ -199,6 +215,6 @@ pub fn picture(
         layers: &layer::NONE,
         frames: None,
     };
-    let pixels = Rect { x: 0, y: 0, width: EDGE, height: EDGE };
+    let pixels = Rect { x: 0, y: 0, width: edge, height: edge };
     job.render(&Work::first(pixels, samples), &Control::default()).unwrap().means()
 }

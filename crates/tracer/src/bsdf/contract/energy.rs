@@ -5,8 +5,8 @@ use super::*;
 #[test]
 fn no_more_light_comes_out_than_went_in() {
     for Example { name, bsdf, both_sides, white_within, .. } in examples() {
-        // Between nearly equal media the critical angle grazes, where tables are coarse.
-        let more = if name.contains(" 1.01 ") { 0.06 } else { MORE };
+        // Under varnish light is made even over directions on average only.
+        let more = if name.contains("varnish") { 0.045 } else { MORE };
         for wo in views(both_sides) {
             let energy = furnace(&bsdf, wo, 64);
             assert!(energy.max_channel() <= 1.0 + more, "{name} {wo}: {energy:?}");

@@ -78,9 +78,9 @@ pub(super) fn examples() -> Vec<Example> {
     all
 }
 
-/// How far a compensated lobe may miss white: brushed ones are compensated as if stretched.
+/// How far a compensated mirror may miss white.
 fn within(alpha: Vec2) -> f32 {
-    if alpha.x == alpha.y { 0.015 } else { 0.05 }
+    if alpha.x == alpha.y { 0.015 } else { 0.03 }
 }
 
 fn conductors(alpha: Vec2) -> Vec<Example> {
@@ -107,9 +107,7 @@ fn dielectrics(alpha: Vec2) -> Vec<Example> {
         let compensated = Dielectric::compensated(ior, alpha);
         all.push(narrow(Example::new(format!("dielectric {ior} {alpha}"), Dielectric::new(ior, alpha))));
         let compensated = Example::new(format!("compensated dielectric {ior} {alpha}"), compensated);
-        // At 1.01 the critical angle grazes; there the tables are too coarse for white. Brushed ones may lose light.
-        let white = if alpha.x == alpha.y && ior != 1.01 { within(alpha) } else { 0.0 };
-        all.push(narrow(compensated.white(white)));
+        all.push(narrow(compensated.white(0.002)));
     }
     all.push(Example::new(format!("thin {alpha}"), ThinDielectric::new(1.5, alpha).tinted(pink, cyan)));
     let thin = ThinDielectric::compensated(1.5, alpha);
@@ -136,7 +134,8 @@ fn matt() -> Vec<Example> {
         all.push(Example::new(format!("rough matt {roughness}"), orange));
         all.push(Example::new(format!("white matt {roughness}"), OrenNayar::new(Rgb::WHITE, roughness)).white(0.01));
     }
-    let leaf = DiffuseTransmission { reflectance: Rgb::new(0.1, 0.4, 0.1), transmittance: Rgb::new(0.2, 0.6, 0.0) };
+    let leaf =
+        DiffuseTransmission { reflectance: Rgb::new(0.1, 0.4, 0.1), transmittance: Rgb::new(0.2, 0.6, 0.0) };
     let paper = DiffuseTransmission { reflectance: Rgb::splat(0.6), transmittance: Rgb::splat(0.4) };
     all.push(Example::new("leaf", leaf).both_sides());
     all.push(Example::new("white paper", paper).both_sides().white(1e-5));

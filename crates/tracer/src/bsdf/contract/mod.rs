@@ -12,7 +12,7 @@ mod sampling;
 use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use examples::{Example, examples};
 use juggler_math::testing::{Random, chi_squared_directions};
-use juggler_math::{Rgb, Vec2, Vec3};
+use juggler_math::{Rgb, Vec2, Vec3, fun};
 
 /// What tables and sampling may add to the light that there is.
 const MORE: f32 = 0.02;

@@ -5,7 +5,6 @@ use super::chart::{CELLS, Chart};
 use super::examples::Breadth;
 use super::*;
 use crate::bsdf::{Conductor, Dielectric, Fresnel};
-use juggler_math::fun;
 use juggler_math::testing::chi_squared;
 
 /// Chance of a false alarm in the whole suite.

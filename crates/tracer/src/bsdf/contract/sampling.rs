@@ -33,7 +33,8 @@ fn directions_of_the_others_follow_their_density_too() {
     follow_their_density(1, 2);
 }
 
-/// Scattered once, light of rough glass is at most what there was: reflection and refraction are chosen by the very microfacet.
+/// Light of rough glass is at most what there was: reflection and refraction are chosen by the very microfacet, and light that
+/// others stop goes on by the density of where it leaves.
 #[test]
 fn rough_glass_never_scatters_more_than_there_was() {
     let mut random = Random::new(85);
@@ -42,7 +43,7 @@ fn rough_glass_never_scatters_more_than_there_was() {
             let alpha = Vec2::splat(alpha);
             let once = [Bsdf::from(Dielectric::new(ior, alpha)), ThinDielectric::new(ior, alpha).into()];
             let all = [Bsdf::from(Dielectric::compensated(ior, alpha)), ThinDielectric::compensated(ior, alpha).into()];
-            for (bsdf, is_once) in once.iter().map(|bsdf| (bsdf, true)).chain(all.iter().map(|bsdf| (bsdf, false))) {
+            for (number, bsdf) in once.iter().chain(&all).enumerate() {
                 let mut energies = Vec::new();
                 for wo in views(true).into_iter().flat_map(|wo| [wo; 1000]) {
                     let sample = bsdf.sample(wo, random.vec2(), random.f32());
@@ -51,7 +52,9 @@ fn rough_glass_never_scatters_more_than_there_was() {
                 energies.sort_by(f32::total_cmp);
                 let (most, nearly) = (energies[energies.len() - 1], energies[energies.len() * 999 / 1000]);
                 // 8.6 and more in a thousandth of samples, were the choice made by the mean share around the viewer.
-                assert!(if is_once { most < 1.001 } else { nearly < 5.5 }, "{ior} {alpha}: {most} {nearly}");
+                // What a pane scatters more than once is picked by the cosine.
+                let limit = if number == 2 { 1.002 } else { 1.001 };
+                assert!(if number == 3 { nearly < 5.5 } else { most < limit }, "{ior} {alpha}: {most} {nearly}");
             }
         }
     }
@@ -62,7 +65,7 @@ fn rough_glass_never_scatters_more_than_there_was() {
 #[test]
 fn light_leaves_a_slab_of_rough_glass() {
     let mut random = Random::new(86);
-    for (alpha, variance) in [(0.05, 0.1), (0.3, 0.6), (1.0, 1.2)] {
+    for (alpha, variance) in [(0.05, 1e-4), (0.3, 1e-4), (1.0, 1e-4)] {
         let bsdf = Bsdf::from(Dielectric::compensated(1.5, Vec2::splat(alpha)));
         let mut walk = || {
             let (mut wo, mut energy) = (Vec3::new(0.6, 0.0, 0.8), 1.0f64);
@@ -79,7 +82,7 @@ fn light_leaves_a_slab_of_rough_glass() {
         let energies: Vec<f64> = (0..40_000).map(|_| walk()).collect();
         let mean = energies.iter().sum::<f64>() / 4e4;
         let spread = energies.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / 4e4;
-        assert!((mean - 1.0).abs() < 0.015 && spread < variance, "{alpha}: {mean}, {spread}");
+        assert!((mean - 1.0).abs() < 0.002 && spread < variance, "{alpha}: {mean}, {spread}");
     }
 }
 

@@ -1,29 +1,41 @@
 //! How much light single scattering at GGX microfacets gives back, and how much it loses to further bounces: tables
 //! by the cosine of the angle and alpha, and the relative index of refraction for borders of clear media.
 //!
+//! What borders of clear media lose is a matter of its own: [`InterfaceLoss`].
+//!
 //! The tables hold 1/10000ths and are made by integrating our own lobes; `tests.rs` says how. Between entries values are
 //! linear in √alpha, in √((η - 1) / (η + 1)) and in √cos; for mirrors in √(cos (1 + alpha) / (cos + alpha)) instead, since
-//! what a polished mirror loses depends on cos / alpha alone. For borders they hold what to add to a value that is right
+//! what a polished mirror loses depends on cos / alpha alone. Of what borders mirror they hold what to add to a value that is right
 //! for polished ones, which is little. Means over the hemisphere are those of these very
 //! functions, so that what compensation puts back is what was lost.
 
-mod border_lost;
 mod border_mirrored;
+mod cells;
+mod interface;
+mod interface_round;
+mod interface_stretched;
 mod mirror_grazing;
 mod mirror_lost;
+mod mirror_stretched;
+mod scramble;
 mod sheen_albedo;
 mod stretched;
+mod zone;
 
+#[cfg(test)]
+mod interface_tests;
 #[cfg(test)]
 mod tests;
 
 use super::fresnel;
-use border_lost::{LOST, LOST_MEAN};
 use border_mirrored::{MIRRORED, MIRRORED_MEAN};
+pub use interface::InterfaceLoss;
 use mirror_grazing::MIRROR_GRAZING;
 use mirror_lost::{MIRROR_LOST, MIRROR_LOST_MEAN};
+pub use scramble::Scramble;
 use sheen_albedo::SHEEN;
-pub use stretched::{border_average, border_lost, mirror_lost, mirror_lost_average};
+pub use stretched::{mirror_lost, mirror_lost_average};
+pub use zone::Side;
 
 /// Entries along the cosine's coordinate, from 0 to 1.
 const COS: usize = 32;
@@ -120,12 +132,6 @@ fn through(sides: &Sides, cos: f32, alpha: f32, ior: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// What a rough border loses of light at an angle of cosine `cos`; `ior` is the index behind it over that in front.
-#[inline]
-pub fn dielectric_loss(cos: f32, alpha: f32, ior: f32) -> f32 {
-    (plain_loss(cos, alpha, ior) + through(&LOST, cos, alpha, ior)).clamp(0.0, 1.0)
-}
-
 /// How far the surface's own angle tells what its microfacets do: not at all once they blur the critical angle by more
 /// than the table's entries are apart.
 #[inline]
@@ -135,23 +141,10 @@ fn polish(alpha: f32) -> f32 {
     squared * squared
 }
 
-/// The same as [`plain_loss`] for mirrored light.
+/// What is mirrored if Fresnel's share were that of the surface itself: right for polished borders.
 #[inline]
 fn plain_mirrored(cos: f32, alpha: f32, ior: f32) -> f32 {
     polish(alpha) * fresnel::dielectric(cos, ior) * (1.0 - mirror_loss(cos, alpha))
-}
-
-/// What is lost if Fresnel's share were that of the surface itself, and refracted light went where the surface would
-/// send it: right for polished borders.
-#[inline]
-fn plain_loss(cos: f32, alpha: f32, ior: f32) -> f32 {
-    let mirrored = fresnel::dielectric(cos, ior);
-    let below = (1.0 - (1.0 - cos * cos) / (ior * ior)).max(0.0).sqrt();
-    let stretch = |cos: f32| (cos * cos + alpha * alpha * (1.0 - cos * cos)).max(0.0).sqrt();
-    let (so, si) = (stretch(cos), stretch(below));
-    // 1 - G2 / G1: see `ggx`.
-    let refracted = (si * cos - cos * below).max(0.0) / (so * below + si * cos).max(f32::MIN_POSITIVE);
-    polish(alpha) * (mirrored * mirror_loss(cos, alpha) + (1.0 - mirrored) * refracted)
 }
 
 /// What a rough border mirrors in single scattering of light at an angle of cosine `cos`.
@@ -160,25 +153,13 @@ pub fn dielectric_mirrored(cos: f32, alpha: f32, ior: f32) -> f32 {
     (plain_mirrored(cos, alpha, ior) + through(&MIRRORED, cos, alpha, ior)).clamp(0.0, 1.0)
 }
 
-/// Means over all directions, each weighted by its cosine; what is neither goes through.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Average {
-    /// Of [`dielectric_mirrored`].
-    pub mirrored: f32,
-    /// Of [`dielectric_loss`].
-    pub lost: f32,
-}
-
-/// What becomes of even light on average.
+/// The mean of [`dielectric_mirrored`] over all directions, each weighted by its cosine.
 #[inline]
-pub fn dielectric_average(alpha: f32, ior: f32) -> Average {
+pub fn dielectric_mirrored_average(alpha: f32, ior: f32) -> f32 {
     let (side, (i, t)) = medium(ior);
     let alpha = place(alpha.sqrt(), ALPHA_CLEAR);
-    let of = |table: &Means| {
-        let (a, b) = (along(&table[side][i], alpha), along(&table[side][i + 1], alpha));
-        a + (b - a) * t
-    };
-    Average { mirrored: of(&MIRRORED_MEAN), lost: of(&LOST_MEAN) }
+    let (a, b) = (along(&MIRRORED_MEAN[side][i], alpha), along(&MIRRORED_MEAN[side][i + 1], alpha));
+    a + (b - a) * t
 }
 
 /// How often to pick the mirrored half of microfacets' light seen at an angle of cosine `cos`: the mean of the share

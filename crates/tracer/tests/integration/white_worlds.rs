@@ -1,0 +1,119 @@
+//! Pictures of rough balls in a white world: what loses no energy vanishes, seen from outside and, where light goes through
+//! it, from within, where radiance is n² times as large. With `JUGGLER_FURNACES=all` over a whole grid: `check.sh deep
+//! furnaces`.
+
+use crate::probe::{Measured, Scene, path, read, square};
+use juggler_math::Vec3;
+use juggler_tracer::camera::AnyCamera;
+
+/// How far a mean may be off.
+const NEAR: f64 = 0.002;
+/// Chance of a false alarm in all cases of a test together.
+const SIGNIFICANCE: f64 = 0.01;
+
+fn is_deep() -> bool {
+    std::env::var_os("JUGGLER_FURNACES").is_some()
+}
+
+/// A bound on how many standard errors the mean of one of `cases` may be off by chance: Šidák's level, and Chernoff's bound
+/// on the tails of a normal distribution.
+fn deviations(cases: usize) -> f64 {
+    let level = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / cases as f64);
+    (2.0 * (2.0 / level).ln()).sqrt()
+}
+
+/// A picture of a ball of radius 1 at the origin that covers all of it, by pixel.
+fn ball(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
+    let world = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
+    let camera = if is_within {
+        r#"{"perspective": {"eye": [0.3, 0.2, 0.1], "look_at": [0.5, -0.1, 1], "vertical_fov_degrees": 100}}"#
+    } else {
+        r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 1.41}}"#
+    };
+    // Light may be caught for long; roulette would only bring noise.
+    let integrator = path(r#""max_depth": 1000"#);
+    square(&world, &read::<AnyCamera>(camera), &*integrator, edge, samples)
+}
+
+/// Rough glass.
+#[derive(Clone, Copy, Debug)]
+struct Glass {
+    ior: f64,
+    roughness: f64,
+    anisotropy: f64,
+    is_within: bool,
+}
+
+impl Glass {
+    fn pixels(self, edge: u32, samples: u32) -> Vec<f64> {
+        let Self { ior, roughness, anisotropy, is_within } = self;
+        let material =
+            format!(r#"{{"dielectric": {{"ior": {ior}, "roughness": {roughness}, "anisotropy": {anisotropy}}}}}"#);
+        let scale = if is_within { ior * ior } else { 1.0 };
+        ball(&material, is_within, edge, samples).into_iter().map(|value| value / scale).collect()
+    }
+}
+
+fn glasses() -> Vec<Glass> {
+    let few = [(2.4, 0.15, 0.0), (2.4, 0.3, 0.0), (1.5, 0.6, 0.7), (1.1, 1.0, 0.0)];
+    let mut all = vec![];
+    for is_within in [false, true] {
+        let of = |(ior, roughness, anisotropy)| Glass { ior, roughness, anisotropy, is_within };
+        if !is_deep() {
+            all.extend(few.map(of));
+            continue;
+        }
+        for ior in [1.1, 1.2, 1.33, 1.5, 1.7, 2.0, 2.4] {
+            for roughness in [0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0] {
+                all.extend([0.0, 0.5, -1.0].map(|anisotropy| of((ior, roughness, anisotropy))));
+            }
+        }
+    }
+    all
+}
+
+/// Checks that a white picture is white: its mean, and each of its pixels.
+fn check(what: &str, pixels: &[f64], cases: usize) -> Result<(), String> {
+    let (Measured { mean, sigma }, most) = (Measured::of(pixels), pixels.iter().copied().fold(0.0, f64::max));
+    println!("{what}: mean {mean:.5} ± {sigma:.5}, brightest {most:.4}");
+    let is_near = (mean - 1.0).abs() <= NEAR + deviations(cases) * sigma && sigma < 0.5 * NEAR;
+    if is_near && most <= 1.5 { Ok(()) } else { Err(format!("{what}: {mean} ± {sigma}, brightest {most}")) }
+}
+
+#[test]
+fn rough_glass_vanishes() {
+    let (all, edge, samples) = if is_deep() { (glasses(), 64, 512) } else { (glasses(), 32, 144) };
+    let wrong: Vec<String> = all
+        .iter()
+        .filter_map(|glass| check(&format!("{glass:?}"), &glass.pixels(edge, samples), all.len()).err())
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Fireflies are rare: they show in large pictures.
+#[test]
+fn rough_glass_has_no_bright_pixels() {
+    let edge = if is_deep() { 256 } else { 32 };
+    let glass = Glass { ior: 2.4, roughness: 0.15, anisotropy: 0.0, is_within: false };
+    let cases = if is_deep() {
+        vec![glass, Glass { roughness: 0.5, ..glass }, Glass { anisotropy: 1.0, ..glass }]
+    } else {
+        vec![glass]
+    };
+    for glass in &cases {
+        check(&format!("{glass:?}"), &glass.pixels(edge, 256), cases.len()).unwrap();
+    }
+}
+
+#[test]
+fn rough_metal_vanishes() {
+    let few = [(0.3, 0.0), (0.7, 0.6), (1.0, -1.0)];
+    let grid = [0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0];
+    let grid = grid.into_iter().flat_map(|roughness| [0.0, 0.3, 0.7, -1.0].map(|anisotropy| (roughness, anisotropy)));
+    let all: Vec<(f64, f64)> = if is_deep() { grid.collect() } else { few.into() };
+    for (roughness, anisotropy) in &all {
+        let material =
+            format!(r#"{{"conductor": {{"reflectance": 1, "roughness": {roughness}, "anisotropy": {anisotropy}}}}}"#);
+        check(&material, &ball(&material, false, 32, 256), all.len()).unwrap();
+    }
+}
