@@ -55,7 +55,7 @@ deep_rays() {
 
 # White furnaces over whole grids of roughness, anisotropy and index of refraction.
 deep_furnaces() {
-  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration white_worlds
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration -- white_worlds rooms::
 }
 
 # What `--max-memory` promises, by an optimized program: the check itself asks an unoptimized one.
