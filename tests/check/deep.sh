@@ -53,8 +53,9 @@ deep_rays() {
   JUGGLER_HITS=1000 cargo test --release --locked -p juggler-tracer --lib precision
 }
 
-# White furnaces over whole grids of roughness, anisotropy and index of refraction.
+# White furnaces over whole grids of roughness, anisotropy, index of refraction and the weights of `principled`.
 deep_furnaces() {
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --lib contract::white
   JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration -- white_worlds rooms::
 }
 

@@ -40,6 +40,12 @@ impl Conductor {
         conductor
     }
 
+    /// One alpha of its microfacets that stands for both.
+    #[inline]
+    pub(super) fn mean_alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
     /// Whether it is a perfect mirror's delta.
     #[inline]
     pub fn is_smooth(&self) -> bool {

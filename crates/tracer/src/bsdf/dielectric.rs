@@ -119,6 +119,12 @@ impl Dielectric {
         Self { reflection, transmission, ..self }
     }
 
+    /// One alpha of its microfacets that stands for both.
+    #[inline]
+    pub(super) fn mean_alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
     /// Whether it only mirrors and refracts, without spread.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -323,6 +329,20 @@ impl Dielectric {
     #[inline]
     fn smooth_share(&self, cos: f32, ior: f32) -> Rgb {
         if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) }
+    }
+
+    /// See [`Lobe::leaving`](super::Lobe::leaving).
+    #[inline]
+    pub(super) fn leaving(&self, cos: f32) -> (f32, f32) {
+        let ior = 1.0 / self.ior;
+        let out = (1.0 - (1.0 - cos * cos) / (ior * ior)).max(0.0).sqrt();
+        (1.0 - sum(self.smooth_share(cos.min(1.0), ior)) / 3.0, out)
+    }
+
+    /// See [`Lobe::shrunk_below`](super::Lobe::shrunk_below).
+    #[inline]
+    pub(super) fn shrunk_below(&self) -> f32 {
+        1.0 / (self.ior * self.ior)
     }
 
     /// Mirrored and refracted, if it is smooth; not those of no weight.

@@ -1,10 +1,12 @@
 //! The surface that glTF 2.0 describes: metal or not, by roughness (Burley 2012), with its extensions clearcoat, transmission,
 //! volume (its border), ior, specular, sheen, anisotropy, iridescence and diffuse_transmission.
 //!
-//! From top to bottom: clearcoat over sheen over a patchwork of metal, glass and plastic by their shares. Numbers mean
+//! From top to bottom: clearcoat over sheen over a patchwork of metal, glass and plastic by their shares. Where light comes from
+//! below, it meets the same patchwork: metal, glass, and plastic's body without its coat. Numbers mean
 //! what glTF says they do. Where its formulas are not the same both ways or lose light, these are used instead:
 //!
-//! - layers dim what is below as [`Bsdf`] says, not by the viewer's side alone;
+//! - layers dim what is below as [`Bsdf`] says, not by the viewer's side alone, and what they keep from leaving glass goes
+//!   back into it;
 //! - rough surfaces get back what is scattered more than once, unless `single_scattering`;
 //! - glass uses Fresnel's exact equations, and thin-walled glass mirrors to and fro inside;
 //! - of glass, `specular` and `specular_color` dim what is mirrored; what they take away does not go through instead.
@@ -55,6 +57,10 @@ pub struct Principled {
     pub diffuse_transmission: f32,
     /// Colour of that light.
     pub diffuse_transmission_color: Rgb,
+    /// Whether light may come from below, be it through this point or another one.
+    pub is_open: bool,
+    /// Whether some of it is refracted, be it through this point or another one.
+    pub is_refracting: bool,
     /// Leaves out what is scattered more than once among microfacets, as most other renderers do.
     pub single_scattering: bool,
 }
@@ -81,6 +87,8 @@ impl Default for Principled {
             iridescence_thickness_nm: 400.0,
             diffuse_transmission: 0.0,
             diffuse_transmission_color: Rgb::WHITE,
+            is_open: false,
+            is_refracting: false,
             single_scattering: false,
         }
     }
@@ -96,20 +104,33 @@ impl Principled {
             bsdf.push_layer(self.mirror(fresnel, Vec2::splat(alpha)), self.clearcoat);
         }
         if !self.sheen_color.is_black() {
-            bsdf.push_layer(Sheen::new(self.sheen_color, self.sheen_roughness * self.sheen_roughness), 1.0);
+            let sheen = Sheen::new(self.sheen_color, self.sheen_roughness * self.sheen_roughness);
+            bsdf.push_dimmed_layer(sheen, self.covered());
         }
         let (metal, rest) = (self.metallic, 1.0 - self.metallic);
         let (glass, plastic) = (rest * self.transmission, rest * (1.0 - self.transmission));
+        let is_open = self.is_open || glass > 0.0 || plastic * self.diffuse_transmission > 0.0;
         if metal > 0.0 {
             let fresnel = self.with_film(Fresnel::tinted(self.base_color, Rgb::WHITE), self.base_color);
             bsdf.push_scaled(self.mirror(fresnel, self.alpha()), metal);
+            if is_open {
+                bsdf.push_below(self.mirror(fresnel, self.alpha()), metal);
+            }
         }
         if glass > 0.0 {
             self.push_glass(bsdf, relative_ior, glass);
         }
         if plastic > 0.0 {
-            self.push_plastic(bsdf, plastic);
+            let is_refracting = (self.is_refracting || glass > 0.0) && !self.thin_walled;
+            self.push_plastic(bsdf, plastic, is_open, if is_refracting { relative_ior } else { 1.0 });
         }
+    }
+
+    /// How much of its albedo sheen takes from what lies below: it spreads light to where the clearcoat over it lets less
+    /// through, and what it so lacks is left to what is below. Fitted for a white furnace.
+    fn covered(&self) -> f32 {
+        let polished = 1.0 - self.clearcoat_roughness;
+        1.0 - self.clearcoat * (0.015 + 0.045 * polished * polished)
     }
 
     /// Alpha along x and y, by KHR_materials_anisotropy.
@@ -150,9 +171,11 @@ impl Principled {
             border.film = film;
             bsdf.push_scaled(border, weight);
         }
+        bsdf.push_return(self.base_color, self.alpha(), weight);
     }
 
-    fn push_plastic(&self, bsdf: &mut Bsdf, weight: f32) {
+    /// Plastic, whose body light from below meets without the coat; `ior` is that of what refracts light, below over above.
+    fn push_plastic(&self, bsdf: &mut Bsdf, weight: f32, is_open: bool, ior: f32) {
         let f0 = self.head_on();
         if self.specular > 0.0 {
             let fresnel = self.with_film(Fresnel::Schlick { f0, f90: Rgb::splat(self.specular) }, f0);
@@ -161,9 +184,13 @@ impl Principled {
         if self.diffuse_transmission > 0.0 {
             let reflectance = self.base_color * (1.0 - self.diffuse_transmission);
             let transmittance = self.diffuse_transmission_color * self.diffuse_transmission;
-            bsdf.push_scaled(DiffuseTransmission { reflectance, transmittance }, weight);
+            bsdf.push_scaled(DiffuseTransmission { reflectance, transmittance, ior }, weight);
+            bsdf.push_matt_return(transmittance * (1.0 / (ior * ior)).min(1.0), weight);
         } else {
             bsdf.push_scaled(Lambert { albedo: self.base_color }, weight);
+            if is_open {
+                bsdf.push_below(Lambert { albedo: self.base_color }, weight);
+            }
         }
     }
 }

@@ -2,15 +2,21 @@
 //!
 //! A layer T dims what was pushed after it, so that both together give no more light than there was. With T(μ) what it
 //! leaves, one minus its albedo, a matt lobe is dimmed by T(μo) T(μi) / T̄ (the mean T̄ over all directions makes a white
-//! one under it white), any other by the smaller of T(μo) and T(μi): for a mirror they are the same, for what is
-//! spread a little light is lost. Both are the same both ways, where glTF's dimming by T(μo) alone is not.
+//! one under it white), a mirror by the smaller of T(μo) and T(μi), which are the same. A glossy lobe is dimmed by
+//! T(μo) T(μi) / √(A(μo) A(μi)), where A goes from T to T̄ by how much the lobe spreads light: the same as for a mirror and for
+//! a matt lobe at either end. All are the same both ways, where glTF's dimming by T(μo) alone is not.
+//!
+//! What layers keep from leaving a surface that light also meets from below goes back there: see [`below`].
+
+mod below;
 
 use super::{BsdfSample, Lobe, Scatter};
 use arrayvec::ArrayVec;
+use below::Role;
 use juggler_math::{Rgb, Vec2, Vec3};
 
 /// Lobes in one [`Bsdf`].
-pub const MAX_LOBES: usize = 6;
+pub const MAX_LOBES: usize = 9;
 
 /// Deltas in one [`Bsdf`]: a lobe has two at most.
 pub const MAX_DELTAS: usize = 2 * MAX_LOBES;
@@ -25,14 +31,22 @@ pub struct Bsdf {
 #[derive(Clone, Copy, Debug)]
 struct Weighted {
     weight: f32,
-    /// Of a matt lobe in layers: 1 / T̄.
+    /// Of a lobe in layers that spreads light: 1 / T̄. Of a returning one: m̄.
     scale: f32,
     /// How much of what comes below it dims: 0 of what is no layer.
     cover: f32,
+    /// Of a glossy lobe in layers, and of a returning one: how much of it spreads light like a matt one, 0 to 1.
+    spread: f32,
+    role: Role,
     lobe: Lobe,
 }
 
 impl Weighted {
+    #[inline]
+    fn new(lobe: impl Into<Lobe>, weight: f32) -> Self {
+        Self { weight, scale: 1.0, cover: 0.0, spread: 0.0, role: Role::Upright, lobe: lobe.into() }
+    }
+
     /// What it leaves to those below of light along `w`.
     #[inline]
     fn leaves(&self, w: Vec3) -> f32 {
@@ -45,7 +59,14 @@ impl Weighted {
     /// What layers over it leave, by what they leave along both directions.
     #[inline]
     fn dimmed(&self, wo: Vec3, wi: Vec3, left_o: f32, left_i: f32) -> f32 {
+        if self.role != Role::Upright {
+            return 1.0;
+        }
         match (self.lobe.is_matt(), wo.z > 0.0 && wi.z > 0.0) {
+            (false, true) if self.spread > 0.0 => {
+                let around = |left: f32| left + self.spread * (1.0 / self.scale - left);
+                left_o * left_i / (around(left_o) * around(left_i)).max(f32::MIN_POSITIVE).sqrt()
+            }
             (false, _) => left_o.min(left_i),
             (true, true) => left_o * left_i * self.scale,
             (true, false) => left_o * left_i,
@@ -90,26 +111,35 @@ impl Bsdf {
     /// Adds `weight`, 0 to 1, of a lobe; none of it at 0.
     #[inline]
     pub fn push_scaled(&mut self, lobe: impl Into<Lobe>, weight: f32) {
-        self.push_any(Weighted { weight, scale: 1.0, cover: 0.0, lobe: lobe.into() });
+        self.push_any(Weighted::new(lobe, weight));
     }
 
     /// Adds `weight`, 0 to 1, of a lobe that lies over those to come and dims them.
     #[inline]
     pub fn push_layer(&mut self, lobe: impl Into<Lobe>, weight: f32) {
-        self.push_any(Weighted { weight, scale: 1.0, cover: weight, lobe: lobe.into() });
+        self.push_any(Weighted { cover: weight, ..Weighted::new(lobe, weight) });
+    }
+
+    /// Adds a lobe that dims those to come by `cover` times its albedo.
+    #[inline]
+    pub fn push_dimmed_layer(&mut self, lobe: impl Into<Lobe>, cover: f32) {
+        self.push_any(Weighted { cover, ..Weighted::new(lobe, 1.0) });
     }
 
     /// Adds `weight` of a lobe that wholly dims those to come: they are part of the same share of the surface.
     #[inline]
     pub fn push_coat(&mut self, lobe: impl Into<Lobe>, weight: f32) {
-        self.push_any(Weighted { weight, scale: 1.0, cover: 1.0, lobe: lobe.into() });
+        self.push_any(Weighted { cover: 1.0, ..Weighted::new(lobe, weight) });
     }
 
     #[inline]
     fn push_any(&mut self, mut lobe: Weighted) {
         if lobe.weight > 0.0 {
-            if lobe.lobe.is_matt() && self.lobes.iter().any(|one| one.cover > 0.0) {
-                lobe.scale = 1.0 / self.mean_left().max(1e-3);
+            if lobe.role == Role::Upright && self.lobes.iter().any(|one| one.cover > 0.0) {
+                lobe.spread = if lobe.cover > 0.0 { 0.0 } else { lobe.lobe.spread() };
+                if lobe.lobe.is_matt() || lobe.spread > 0.0 {
+                    lobe.scale = 1.0 / self.mean_left().max(1e-3);
+                }
             }
             let full = self.lobes.try_push(lobe);
             debug_assert!(full.is_ok(), "more than {MAX_LOBES} lobes");
@@ -121,21 +151,9 @@ impl Bsdf {
         self.lobes.iter_mut().filter(|one| is_muted(one.lobe.scatter())).for_each(|one| one.weight = 0.0);
     }
 
-    /// What all layers leave of even light: ∫ 2 μ T(μ) dμ = ∫ 4 s³ T(s²) ds by Gauss and Legendre's five places.
+    /// What all layers leave of even light.
     fn mean_left(&self) -> f32 {
-        const PLACES: [(f32, f32); 5] = [
-            (0.046_910_077, 0.118_463_44),
-            (0.230_765_34, 0.239_314_34),
-            (0.5, 0.284_444_45),
-            (0.769_234_66, 0.239_314_34),
-            (0.953_089_9, 0.118_463_44),
-        ];
-        PLACES.iter().fold(0.0, |sum, (s, weight)| {
-            let cos = s * s;
-            let along = ((1.0 - cos * cos) * 0.5).max(0.0).sqrt();
-            let w = Vec3::new(along, along, cos);
-            sum + weight * 4.0 * s * cos * self.lobes.iter().fold(1.0, |left, one| left * one.leaves(w))
-        })
+        mean(|w| self.lobes.iter().fold(1.0, |left, one| left * one.leaves(w)))
     }
 
     /// The sum of f |cos θi|, without deltas.
@@ -156,7 +174,7 @@ impl Bsdf {
         match self.lobes.as_slice() {
             [] => (Rgb::BLACK, 0.0),
             [one] => {
-                let (value, pdf) = one.lobe.eval_pdf(wo, wi);
+                let (value, pdf) = self.eval_pdf_of_one(0, one, wo, wi);
                 (value * one.weight, pdf)
             }
             _ => self.eval_pdf_of_many(&self.shares(wo), wo, wi, None),
@@ -171,7 +189,7 @@ impl Bsdf {
         match self.lobes.as_slice() {
             [] => None,
             [one] => {
-                let sample = one.lobe.sample(wo, u, choice)?;
+                let sample = self.sample_of_one(0, one, wo, u, choice)?;
                 Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
             }
             _ => self.sample_one_of_many(wo, u, choice),
@@ -192,7 +210,7 @@ impl Bsdf {
         }
         let (index, share, x) = picked?;
         let one = self.lobes.get(index)?;
-        let sample = one.lobe.sample(wo, Vec2::new(x, u.y), choice)?;
+        let sample = self.sample_of_one(index, one, wo, Vec2::new(x, u.y), choice)?;
         if sample.scatter == Scatter::Specular {
             let weight = sample.weight * (one.weight * self.dimming(index, wo, sample.wi) / share);
             return Some(BsdfSample { weight, pdf: sample.pdf * share, ..sample });
@@ -221,7 +239,7 @@ impl Bsdf {
         for (index, (one, share)) in self.lobes.iter().zip(shares).enumerate() {
             let (part, pdf) = match known {
                 Some((same, known)) if same == index => known,
-                _ => one.lobe.eval_pdf(wo, wi),
+                _ => self.eval_pdf_of_one(index, one, wo, wi),
             };
             value += part * (one.weight * one.dimmed(wo, wi, left_o, left_i));
             density += pdf * share;
@@ -243,8 +261,8 @@ impl Bsdf {
     fn shares(&self, wo: Vec3) -> [f32; MAX_LOBES] {
         let mut shares = [0.0; MAX_LOBES];
         let (mut sum, mut left) = (0.0, 1.0);
-        for (share, one) in shares.iter_mut().zip(&self.lobes) {
-            let albedo = one.lobe.albedo(wo);
+        for (index, (share, one)) in shares.iter_mut().zip(&self.lobes).enumerate() {
+            let albedo = self.albedo_of_one(index, one, wo);
             *share = super::lobe::sum(albedo) * one.weight * left;
             sum += *share;
             if one.cover > 0.0 && wo.z > 0.0 {
@@ -261,8 +279,8 @@ impl Bsdf {
     /// of radiance that crosses a border): an estimate within a few percent, for denoisers and picking lobes.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         let mut left = 1.0;
-        self.lobes.iter().fold(Rgb::BLACK, |sum, one| {
-            let sum = sum + one.lobe.albedo(wo) * (one.weight * left);
+        self.lobes.iter().enumerate().fold(Rgb::BLACK, |sum, (index, one)| {
+            let sum = sum + self.albedo_of_one(index, one, wo) * (one.weight * left);
             left *= one.leaves(wo);
             sum
         })
@@ -297,7 +315,7 @@ impl Bsdf {
     pub fn deltas(&self, wo: Vec3) -> ArrayVec<BsdfSample, MAX_DELTAS> {
         let mut deltas = ArrayVec::new();
         for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.has_specular()) {
-            for delta in one.lobe.deltas(wo) {
+            for delta in self.deltas_of_one(index, one, wo) {
                 let weight = one.weight * self.dimming(index, wo, delta.wi);
                 let full = deltas.try_push(BsdfSample { weight: delta.weight * weight, ..delta });
                 debug_assert!(full.is_ok(), "more than {MAX_DELTAS} deltas");
@@ -305,4 +323,21 @@ impl Bsdf {
         }
         deltas
     }
+}
+
+/// The mean over directions above, each weighted by its cosine, of what depends on the cosine: ∫ 2 μ f(μ) dμ = ∫ 4 s³ f(s²) ds
+/// by Gauss and Legendre's five places.
+fn mean(of: impl Fn(Vec3) -> f32) -> f32 {
+    const PLACES: [(f32, f32); 5] = [
+        (0.046_910_077, 0.118_463_44),
+        (0.230_765_34, 0.239_314_34),
+        (0.5, 0.284_444_45),
+        (0.769_234_66, 0.239_314_34),
+        (0.953_089_9, 0.118_463_44),
+    ];
+    PLACES.iter().fold(0.0, |sum, (s, weight)| {
+        let cos = s * s;
+        let along = ((1.0 - cos * cos) * 0.5).max(0.0).sqrt();
+        sum + weight * 4.0 * s * cos * of(Vec3::new(along, along, cos))
+    })
 }

@@ -47,6 +47,12 @@ impl ThinDielectric {
         Self { reflection, transmission, ..self }
     }
 
+    /// One alpha of its microfacets that stands for both.
+    #[inline]
+    pub(super) fn mean_alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
     /// Whether it only mirrors and lets through, without spread.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -159,6 +165,19 @@ impl ThinDielectric {
         }
         let average = self.average();
         once + (self.reflection * average + self.transmission * (1.0 - average)) * lost
+    }
+
+    /// The shares of light along `wo` that are mirrored and that go through, but for their colors.
+    pub(super) fn parts(&self, wo: Vec3) -> [f32; 2] {
+        let white = Self { reflection: Rgb::WHITE, transmission: Rgb::BLACK, ..*self };
+        let (mirrored, all) = (white.albedo(wo), white.tinted(Rgb::WHITE, Rgb::WHITE).albedo(wo));
+        [sum(mirrored) / 3.0, sum(all - mirrored) / 3.0]
+    }
+
+    /// See [`Lobe::leaving`](super::Lobe::leaving).
+    #[inline]
+    pub(super) fn leaving(&self, cos: f32) -> (f32, f32) {
+        (1.0 - sum(self.share(cos.min(1.0))) / 3.0, cos)
     }
 
     /// Mirrored and straight on, if it is smooth; not those of no weight.

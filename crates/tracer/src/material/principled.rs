@@ -123,6 +123,11 @@ impl Default for Principled {
     }
 }
 
+/// Whether a share is anything but 0 everywhere.
+fn may(input: &Input<f32>) -> bool {
+    *input != Input::Value(0.0)
+}
+
 /// The thickest film, nanometres.
 const THICKEST_FILM: f32 = 1e6;
 
@@ -222,7 +227,6 @@ impl Principled {
 
     /// Whether light may come in: by refraction, or to be scattered or coloured inside.
     fn has_inside(&self, medium: &Medium) -> bool {
-        let may = |input: &Input<f32>| *input != Input::Value(0.0);
         !self.thin && (may(&self.transmission) || (may(&self.diffuse_transmission) && !medium.is_clear()))
     }
 
@@ -233,6 +237,8 @@ impl Principled {
             clearcoat_ior: self.clearcoat_ior,
             iridescence_ior: self.iridescence_ior,
             thin_walled: self.thin,
+            is_open: [&self.transmission, &self.diffuse_transmission].into_iter().any(may),
+            is_refracting: may(&self.transmission),
             single_scattering: !self.energy_compensation,
             ..PrincipledLobes::default()
         };

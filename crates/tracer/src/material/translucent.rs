@@ -65,7 +65,7 @@ impl CompiledTranslucent {
         let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
         let (back, through) = (share(textures, &self.reflectance, &at), share(textures, &self.transmittance, &at));
         let scale = (back + through).map(|both| 1.0 / both.max(1.0));
-        bsdf.push(DiffuseTransmission { reflectance: back * scale, transmittance: through * scale });
+        bsdf.push(DiffuseTransmission { reflectance: back * scale, transmittance: through * scale, ior: 1.0 });
     }
 
     /// Whether it differs from place to place.

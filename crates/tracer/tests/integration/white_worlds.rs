@@ -117,3 +117,26 @@ fn rough_metal_vanishes() {
         check(&material, &ball(&material, false, 32, 256), all.len()).unwrap();
     }
 }
+
+/// Patchworks and layers of `principled` keep 99 %.
+#[test]
+fn principled_glass_and_what_lies_over_it_vanishes() {
+    let materials = [
+        r#""transmission": 0.4"#,
+        r#""transmission": 0.4, "clearcoat": 1"#,
+        r#""transmission": 1, "clearcoat": 1"#,
+        r#""transmission": 1, "clearcoat": 1, "sheen_color": [1, 1, 1], "sheen_roughness": 0.5"#,
+        r#""transmission": 0.5, "metallic": 0.5, "roughness": 0.2"#,
+        r#""diffuse_transmission": 0.7, "medium": {"scattering": 1}"#,
+    ];
+    for numbers in materials {
+        let material = format!(r#"{{"principled": {{"base_color": [1, 1, 1], {numbers}}}}}"#);
+        let Measured { mean, sigma } = Measured::of(&ball(&material, false, 32, 144));
+        println!("{material}: {mean:.5} ± {sigma:.5}");
+        let allowed = deviations(materials.len()) * sigma;
+        assert!(
+            sigma < 0.002 && mean >= 0.99 - allowed && mean <= 1.0 + NEAR + allowed,
+            "{material}: {mean} ± {sigma}"
+        );
+    }
+}

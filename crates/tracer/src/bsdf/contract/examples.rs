@@ -75,6 +75,9 @@ pub(super) fn examples() -> Vec<Example> {
     all.extend(films());
     all.extend(classics());
     all.extend(super::principled::examples());
+    let (reflectance, transmittance) = (Rgb::splat(0.6), Rgb::splat(0.4));
+    let skin = DiffuseTransmission { reflectance, transmittance, ior: 1.4 };
+    all.push(Example::new("white skin", skin).both_sides().white(1e-5));
     all
 }
 
@@ -135,8 +138,8 @@ fn matt() -> Vec<Example> {
         all.push(Example::new(format!("white matt {roughness}"), OrenNayar::new(Rgb::WHITE, roughness)).white(0.01));
     }
     let leaf =
-        DiffuseTransmission { reflectance: Rgb::new(0.1, 0.4, 0.1), transmittance: Rgb::new(0.2, 0.6, 0.0) };
-    let paper = DiffuseTransmission { reflectance: Rgb::splat(0.6), transmittance: Rgb::splat(0.4) };
+        DiffuseTransmission { reflectance: Rgb::new(0.1, 0.4, 0.1), transmittance: Rgb::new(0.2, 0.6, 0.0), ior: 1.0 };
+    let paper = DiffuseTransmission { reflectance: Rgb::splat(0.6), transmittance: Rgb::splat(0.4), ior: 1.0 };
     all.push(Example::new("leaf", leaf).both_sides());
     all.push(Example::new("white paper", paper).both_sides().white(1e-5));
     for alpha in [0.0, 0.1, 0.4, 1.0] {

@@ -8,11 +8,12 @@ mod needles;
 mod numbers;
 mod principled;
 mod sampling;
+mod white;
 
 use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use examples::{Example, examples};
 use juggler_math::testing::{Random, chi_squared_directions};
-use juggler_math::{Rgb, Vec2, Vec3, fun};
+use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
 
 /// What tables and sampling may add to the light that there is.
 const MORE: f32 = 0.02;
