@@ -14,7 +14,8 @@ use juggler_math::{Vec2, Vec3, fun};
 
 /// Fractional part of a generalized golden ratio's sequence (Roberts 2018), even in four dimensions.
 fn even(i: u32) -> [f32; 4] {
-    const STEPS: [f64; 4] = [0.856_674_883_854_503, 0.733_891_856_627_126, 0.628_706_721_040_111, 0.538_597_257_221_8];
+    const STEPS: [f64; 4] =
+        [0.856_674_883_854_502_9, 0.733_891_856_627_126_2, 0.628_706_721_040_111, 0.538_597_257_221_801];
     STEPS.map(|step| ((0.5 + f64::from(i + 1) * step).fract() as f32).min(1f32.next_down()))
 }
 

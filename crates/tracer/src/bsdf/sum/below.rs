@@ -7,7 +7,7 @@
 //! direction, as a mirror does. Rough glass returns it as a mirror of the same roughness with all scattering among its
 //! microfacets. By reciprocity the mean m̄ of what is to return is the mean of (1 - T) t from above over η², with t the
 //! transmittance of the rough glass. The mirror's share at an angle θ of incidence goes from m(cos θ), with polished glass, to
-//! m̄, at alphas of 0.5 and more. So energy is kept on average over directions, and exactly for each direction where the
+//! m̄, once microfacets turn to all sides. So energy is kept on average over directions, and exactly for each direction where the
 //! glass is polished.
 
 use super::{Bsdf, Weighted, mean};
@@ -63,8 +63,8 @@ impl Bsdf {
         } else {
             mean(|w| (1.0 - left_by(layers, w)) * glass.lobe.transmitted(w)) * glass.lobe.shrunk_below()
         };
-        // Hardly any at first: light that a ball reflects totally again and again must not gain.
-        let spread = (4.0 * ggx.mean_alpha() * ggx.mean_alpha()).min(1.0);
+        let spread = (1.0 - ggx.mean_alpha() / 0.25).max(0.0);
+        let spread = 1.0 - spread * spread * spread * spread;
         let mirror = Conductor::compensated(Fresnel::Schlick { f0: color, f90: color }, alpha);
         self.push_any(Weighted { scale, spread, role: Role::Returned, ..Weighted::new(mirror, weight) });
     }
