@@ -84,13 +84,10 @@ impl<L: Into<Lobe>> From<L> for Bsdf {
 }
 
 impl Bsdf {
-    /// Takes all light and gives none back.
-    pub const BLACK: Self = Self::new();
-
-    /// Without lobes.
-    #[inline]
-    pub const fn new() -> Self {
-        Self { lobes: ArrayVec::new_const() }
+    /// Without lobes: absorbs all light.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self { lobes: ArrayVec::new() }
     }
 
     /// The lobes that `add` pushes.

@@ -67,15 +67,19 @@ pub struct Shade {
 }
 
 impl Shade {
-    /// Takes all light and gives none back; its frame is to be set.
-    pub const BLACK: Self = Self {
-        emission: Rgb::BLACK,
-        opacity: 1.0,
-        frame: Frame::AXES,
-        bsdf: Bsdf::BLACK,
-        transmissive: false,
-        lamp_scale: 1.0,
-    };
+    /// Shading of a surface that absorbs all light; the caller sets its frame. A function, not a
+    /// constant: a constant would be copied whole, unused lobes included.
+    #[inline(always)]
+    pub fn black() -> Self {
+        Self {
+            emission: Rgb::BLACK,
+            opacity: 1.0,
+            frame: Frame::AXES,
+            bsdf: Bsdf::new(),
+            transmissive: false,
+            lamp_scale: 1.0,
+        }
+    }
 
     /// The share of light from everywhere that comes back towards `wo`, a unit vector of the world: its colour without light.
     pub fn albedo(&self, wo: Vec3) -> Rgb {

@@ -145,18 +145,26 @@ impl MaterialTable {
     }
 
     /// Material `id` at a point; black for a number that is no material.
+    #[inline(always)]
     pub fn shade(&self, id: MaterialId, view: &View) -> Shade {
-        let (mut shade, mut id, first, mut view) = (Shade::BLACK, id, view, *view);
+        let mut shade = Shade::black();
+        self.fill(id, view, &mut shade);
+        shade
+    }
+
+    /// [`MaterialTable::shade`] into a black `shade`, which is too large to be handed on by value.
+    pub fn fill(&self, id: MaterialId, view: &View, shade: &mut Shade) {
+        let (mut id, first, mut view) = (id, view, *view);
         // Every part is an earlier material, so this ends.
         while let Some(compiled) = self.materials.get(id.0 as usize) {
             id = match compiled {
                 Compiled::Phong(phong) => {
-                    Self::classic(&phong.eval(&self.textures, || view.lookup()), &view, &mut shade);
-                    return shade;
+                    Self::classic(&phong.eval(&self.textures, || view.lookup()), &view, shade);
+                    return;
                 }
                 Compiled::Physical(physical) => {
-                    self.physical(physical, &view, &mut shade);
-                    return shade;
+                    self.physical(physical, &view, shade);
+                    return;
                 }
                 Compiled::NormalMap(map) => {
                     view.normal = map.turned(&self.textures, &view);
@@ -186,7 +194,6 @@ impl MaterialTable {
             };
         }
         shade.frame = Frame::around(facing_normal(first, first.normal));
-        shade
     }
 
     /// What is nothing but a scattering function, in its frame.

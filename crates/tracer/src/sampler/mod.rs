@@ -92,16 +92,30 @@ impl Sampler {
         Self { index: self.index.wrapping_mul(parts).wrapping_add(part), ..*self }
     }
 
-    /// The next number in [0, 1).
+    /// The next number in [0, 1): the first coordinate of [`Sampler::next_2d`].
+    #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        self.next_2d().x
+        match self.pattern {
+            Pattern::Sobol => {
+                let seed = self.next_seed();
+                sobol::first_coordinate(self.index, seed)
+            }
+            _ => self.next_2d().x,
+        }
+    }
+
+    /// Seed of the next dimension.
+    #[inline]
+    fn next_seed(&mut self) -> u32 {
+        let seed = self.seed ^ hash::mix(self.dimension.wrapping_mul(0x9e37_79b9));
+        self.dimension += 1;
+        seed
     }
 
     /// The next point in [0, 1)².
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
-        let seed = self.seed ^ hash::mix(self.dimension.wrapping_mul(0x9e37_79b9));
-        self.dimension += 1;
+        let seed = self.next_seed();
         match self.pattern {
             Pattern::Sobol => sobol::point(self.index, seed),
             Pattern::Stratified { side } => stratified::point(self.index, self.dimension == 1, seed, side),

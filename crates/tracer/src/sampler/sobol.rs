@@ -22,13 +22,30 @@ impl Spread for Sobol {
     }
 }
 
+/// First coordinate of [`point`].
+#[inline]
+pub fn first_coordinate(index: u32, seed: u32) -> f32 {
+    hash::unit_f32(scrambled_first(shuffled(index, seed), seed).reverse_bits())
+}
+
+/// Place of sample `index` in the sequence.
+#[inline]
+fn shuffled(index: u32, seed: u32) -> u32 {
+    permute(index.reverse_bits(), seed).reverse_bits()
+}
+
+/// Scrambled first dimension, bits reversed: the bits of Sobol's first dimension are those of the
+/// index reversed, and scrambling works on the reversed bits again, so the two reversals cancel.
+#[inline]
+fn scrambled_first(index: u32, seed: u32) -> u32 {
+    permute(index, seed ^ 0x9c8f_2d35)
+}
+
 /// Point `index` of the scrambled and shuffled sequence `seed`.
 #[inline]
 pub fn point(index: u32, seed: u32) -> Vec2 {
-    let index = permute(index.reverse_bits(), seed).reverse_bits();
-    // The bits of Sobol's first dimension are those of the index reversed, and scrambling works on the
-    // reversed bits again: the two reversals cancel.
-    let x = permute(index, seed ^ 0x9c8f_2d35);
+    let index = shuffled(index, seed);
+    let x = scrambled_first(index, seed);
     let y = permute(second_dimension(index), hash::mix(seed));
     // Both are reversed in one go, which also exchanges them.
     let both = (u64::from(y) << 32 | u64::from(x)).reverse_bits();

@@ -213,6 +213,12 @@ pub struct Prospect {
 }
 
 impl Prospect {
+    /// Sees none.
+    #[inline(always)]
+    pub fn empty() -> Self {
+        Self { sights: ArrayVec::new(), total: 0.0 }
+    }
+
     /// A way by which light may come, and its chance; none as often as there is little to see.
     pub fn pick(&self, u: f32) -> Option<(CasterId, f32)> {
         let all = self.total.max(ALWAYS);
@@ -284,14 +290,19 @@ impl World {
     }
 
     /// The polished balls as a place sees them.
-    #[inline]
+    #[inline(always)]
     pub fn prospect(&self, from: &Receiver) -> Prospect {
-        let mut prospect = Prospect { sights: ArrayVec::new(), total: 0.0 };
+        let mut prospect = Prospect::empty();
+        self.fill_prospect(from, &mut prospect);
+        prospect
+    }
+
+    /// Adds the polished balls as a place sees them to an empty prospect, where it stands.
+    pub fn fill_prospect(&self, from: &Receiver, prospect: &mut Prospect) {
         for caster in self.casters.iter().take(MOST) {
             let sight = caster.sight(from);
             prospect.total = prospect.total + sight.worths[0] + sight.worths[1];
             prospect.sights.push(sight);
         }
-        prospect
     }
 }

@@ -199,11 +199,19 @@ impl World {
 
     /// The material at a vertex, seen from `wo`, with an index of refraction of `around_ior` around it; `pick` is a number in [0, 1) for what is one thing or another by
     /// chance.
-    #[inline]
+    #[inline(always)]
     pub fn shade(&self, vertex: &Vertex, wo: Vec3, around_ior: f32, pick: f32) -> Shade {
+        let mut shade = Shade::black();
+        self.fill_shade(vertex, wo, around_ior, pick, &mut shade);
+        shade
+    }
+
+    /// [`World::shade`] into a black `shade`, which is too large to be handed on by value.
+    #[inline]
+    pub fn fill_shade(&self, vertex: &Vertex, wo: Vec3, around_ior: f32, pick: f32, shade: &mut Shade) {
         let tangents = vertex.tangents.as_ref();
         let view = View { wo, around_ior, pick, tangents, ..View::of(&vertex.surface) };
-        self.materials.shade(vertex.material, &view)
+        self.materials.fill(vertex.material, &view, shade);
     }
 
     /// Whether nothing about the material at a vertex is left to chance.

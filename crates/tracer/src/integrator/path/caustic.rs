@@ -72,7 +72,7 @@ impl Path {
 
     /// Asks one light by way of one ball.
     pub fn ask_by_ball(&self, seen: &Seen, world: &World, path: &PathState, emit: &mut Emit) {
-        let Some(prospect) = &seen.prospect else { return };
+        let Some(prospect) = seen.prospect else { return };
         let picked = prospect.pick(path.sampler.at(dimension::CASTER).next_1d());
         let Some((id, chance)) = picked else { return };
         let Some((caster, way)) = world.caster(id).filter(|(_, way)| self.allows(*way, path)) else { return };

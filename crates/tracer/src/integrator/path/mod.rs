@@ -8,7 +8,8 @@
 //! ```
 
 use super::{Clamp, Emit, Integrator, PathState};
-use crate::world::{Receiver, Shadows, Vertex, World};
+use crate::material::Shade;
+use crate::world::{Prospect, Receiver, Shadows, Vertex, World};
 use caustic::Met;
 use juggler_math::{Ray, Rgb, Vec2};
 pub use sampling::Sampling;
@@ -140,7 +141,8 @@ impl Integrator for Path {
         }
         let around = surface::around(world, path, interior);
         let choice = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(dimension::CHOICE).next_2d() };
-        let mut shade = world.shade(vertex, -ray.direction, around, choice.x);
+        let mut shade = Shade::black();
+        world.fill_shade(vertex, -ray.direction, around, choice.x, &mut shade);
         if shade.opacity < 1.0 && choice.y >= shade.opacity {
             return surface::pass(world, ray, path, vertex, emit);
         }
@@ -156,8 +158,10 @@ impl Integrator for Path {
             return;
         }
         self.limit(&mut shade.bsdf, path);
-        let seen = Seen::new(world, ray, vertex, &shade, interior);
+        let mut prospect = Prospect::empty();
+        let mut seen = Seen::new(ray, vertex, &shade, interior);
         if !seen.shade.bsdf.is_specular() {
+            seen.look_for_casters(world, &mut prospect);
             seen.ask_lights(self.asked(world, path), self.sampling, world, path, emit);
             self.ask_by_ball(&seen, world, path, emit);
         }

@@ -18,8 +18,8 @@ pub struct Seen<'a> {
     pub local: Vec3,
     pub time: f32,
     interior: Option<InteriorId>,
-    /// The polished balls that it sees, if it is to ask for lights.
-    pub prospect: Option<Prospect>,
+    /// Specular spheres that the vertex sees, where the path samples lights by way of them.
+    pub prospect: Option<&'a Prospect>,
 }
 
 /// Goes straight on as if nothing had been there.
@@ -65,20 +65,20 @@ impl Lighting {
 }
 
 impl<'a> Seen<'a> {
-    pub fn new(
-        world: &'a World,
-        ray: &Ray,
-        vertex: &'a Vertex,
-        shade: &'a Shade,
-        interior: Option<InteriorId>,
-    ) -> Self {
+    #[inline]
+    pub fn new(ray: &Ray, vertex: &'a Vertex, shade: &'a Shade, interior: Option<InteriorId>) -> Self {
         let wo = -ray.direction;
         let local = shade.frame.to_local(wo);
-        let mut seen = Self { surface: &vertex.surface, shade, wo, local, time: ray.time, interior, prospect: None };
-        if world.has_casters() && !seen.shade.bsdf.is_specular() {
-            seen.prospect = Some(world.prospect(&seen.receiver()));
+        Self { surface: &vertex.surface, shade, wo, local, time: ray.time, interior, prospect: None }
+    }
+
+    /// Looks for specular spheres, which `prospect` then holds.
+    #[inline]
+    pub fn look_for_casters(&mut self, world: &World, prospect: &'a mut Prospect) {
+        if world.has_casters() {
+            world.fill_prospect(&self.receiver(), prospect);
+            self.prospect = Some(prospect);
         }
-        seen
     }
 
     /// As what light comes to.
@@ -94,7 +94,7 @@ impl<'a> Seen<'a> {
     /// What is scattered, and the density with which a path goes on in that direction.
     pub fn eval_pdf(&self, direction: Vec3, wi: Vec3) -> (Rgb, f32) {
         let (scattered, pdf) = self.shade.bsdf.eval_pdf(self.local, wi);
-        match &self.prospect {
+        match self.prospect {
             Some(prospect) => {
                 let share = self.guided(prospect);
                 (scattered, pdf * (1.0 - share) + share * prospect.pdf(direction))
@@ -114,7 +114,7 @@ impl<'a> Seen<'a> {
         let mut u = path.sampler.at(dimension::SCATTER).next_2d();
         let (frame, bsdf) = (&self.shade.frame, &self.shade.bsdf);
         let choice = if bsdf.has_choice() { path.sampler.at(dimension::FACET).next_1d() } else { 0.0 };
-        let Some(prospect) = &self.prospect else {
+        let Some(prospect) = self.prospect else {
             let sample = bsdf.sample(self.local, u, choice)?;
             return Some((frame.to_world(sample.wi), sample));
         };
@@ -211,10 +211,14 @@ impl<'a> Seen<'a> {
 impl Path {
     /// Takes away the ways of scattering that a path has had as often as it may: for lights that are asked and for
     /// directions that are followed alike, since both share the light between them.
+    #[inline]
     pub fn limit(&self, bsdf: &mut Bsdf, path: &PathState) {
-        if [self.max_diffuse, self.max_glossy, self.max_specular] == [None; 3] {
-            return;
+        if self.max_diffuse.is_some() || self.max_glossy.is_some() || self.max_specular.is_some() {
+            self.mute(bsdf, path);
         }
+    }
+
+    fn mute(&self, bsdf: &mut Bsdf, path: &PathState) {
         let Counts { diffuse, glossy, specular, .. } = path.trail.scattered;
         let is_done = |count: u16, most: Option<u32>| most.is_some_and(|most| u32::from(count) >= most);
         bsdf.mute(|scatter| match scatter {
