@@ -29,6 +29,18 @@ fn cells(points: &[Vec2], x: u32, y: u32) -> Vec<u32> {
 }
 
 #[test]
+fn one_dimensional_numbers_are_first_coordinates() {
+    for pattern in patterns(16) {
+        let pixel = Sampler::new(pattern, 7).pixel(UVec2::new(3, 5));
+        for (index, dimension) in (0..100).flat_map(|index| (0..4).map(move |dimension| (index, dimension))) {
+            let (mut one, mut two) = (pixel.sample(index).at(dimension), pixel.sample(index).at(dimension));
+            assert_eq!(one.next_1d().to_bits(), two.next_2d().x.to_bits(), "{pattern:?}, sample {index}");
+            assert_eq!(one, two, "{pattern:?}: both leave the same dimension behind");
+        }
+    }
+}
+
+#[test]
 fn sobol_fills_every_elementary_interval_once() {
     let points = points(Pattern::Sobol, 256);
     for bits in 0..=8 {

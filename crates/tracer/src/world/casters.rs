@@ -213,7 +213,7 @@ pub struct Prospect {
 }
 
 impl Prospect {
-    /// Sees none.
+    /// Without spheres.
     #[inline(always)]
     pub fn empty() -> Self {
         Self { sights: ArrayVec::new(), total: 0.0 }
@@ -297,7 +297,7 @@ impl World {
         prospect
     }
 
-    /// Adds the polished balls as a place sees them to an empty prospect, where it stands.
+    /// [`World::prospect`] into an empty `prospect`, which is too large to be handed on by value.
     pub fn fill_prospect(&self, from: &Receiver, prospect: &mut Prospect) {
         for caster in self.casters.iter().take(MOST) {
             let sight = caster.sight(from);

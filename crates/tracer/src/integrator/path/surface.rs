@@ -72,7 +72,7 @@ impl<'a> Seen<'a> {
         Self { surface: &vertex.surface, shade, wo, local, time: ray.time, interior, prospect: None }
     }
 
-    /// Looks for specular spheres, which `prospect` then holds.
+    /// Finds the specular spheres that the vertex sees; `prospect` is empty before.
     #[inline]
     pub fn look_for_casters(&mut self, world: &World, prospect: &'a mut Prospect) {
         if world.has_casters() {
