@@ -4,6 +4,7 @@
 //! halves of the input; a firefly is cut. Its light goes to its surroundings (`energy`).
 
 use crate::Noisy;
+use crate::features::{FEATURES, Feature, of_pixel};
 use crate::prepare::is_known;
 use juggler_math::Rgb;
 use rayon::prelude::*;
@@ -15,6 +16,8 @@ const REACH: usize = 3;
 /// Differences of its halves that the mean of a highlight exceeds its surroundings by. Clamped fireflies are equally bright,
 /// so that both halves may have one: a small factor would take a pair of them for a highlight.
 const SURE: f32 = 8.0;
+/// Squared difference of features from which on a pixel shows another surface than its surroundings.
+const DIFFERENT: f32 = 0.05;
 
 /// The picture without single bright pixels.
 pub(crate) fn cut(noisy: &Noisy, pixels: &[Rgb]) -> Vec<Rgb> {
@@ -22,13 +25,38 @@ pub(crate) fn cut(noisy: &Noisy, pixels: &[Rgb]) -> Vec<Rgb> {
     let pixel = |i: usize| {
         let own = brightness[i];
         let limit = FACTOR * around(noisy.width, &brightness, i);
-        if own <= limit {
+        if own <= limit || shows_something_else(noisy, i) {
             return pixels[i];
         }
         let limit = limit.max(sure(noisy, i));
         if own > limit { pixels[i] * (limit / own) } else { pixels[i] }
     };
     (0..pixels.len()).into_par_iter().map(pixel).collect()
+}
+
+/// Whether the features of pixel `i` differ from the mean of the pixels around it: a lamp far away is no firefly.
+fn shows_something_else(noisy: &Noisy, i: usize) -> bool {
+    let (x, y) = (i % noisy.width, i / noisy.width);
+    let (mut mean, mut count) = ([0.0; FEATURES], 0.0);
+    for row in y.saturating_sub(1)..noisy.height.min(y + 2) {
+        for column in x.saturating_sub(1)..noisy.width.min(x + 2) {
+            let at = row * noisy.width + column;
+            if at != i {
+                let features = features(noisy, at);
+                (0..FEATURES).for_each(|k| mean[k] += features[k]);
+                count += 1.0;
+            }
+        }
+    }
+    let own = features(noisy, i);
+    let square = |k: usize| (own[k] - mean[k] / count) * (own[k] - mean[k] / count);
+    count > 0.0 && (0..FEATURES).map(square).sum::<f32>() > DIFFERENT
+}
+
+/// Features of a pixel, the mean of both halves.
+fn features(noisy: &Noisy, i: usize) -> Feature {
+    let [a, b] = [0, 1].map(|half: usize| of_pixel(&noisy.features, half, i, 0.0));
+    std::array::from_fn(|k| (a[k] + b[k]) * 0.5)
 }
 
 /// Brightness that both halves of the input vouch for.
@@ -91,6 +119,17 @@ mod tests {
     fn a_highlight_that_both_halves_have_stays() {
         assert_eq!(cut_at([10.0, 10.0], 10.0), 10.0);
         assert!(cut_at([10.2, 9.8], 10.0) > 6.0);
+    }
+
+    #[test]
+    fn a_lamp_far_away_stays() {
+        let at = 10 * WIDTH + 10;
+        let (mut wall, mut depth) = (vec![Rgb::WHITE; WIDTH * WIDTH], vec![5.0; WIDTH * WIDTH]);
+        let half = wall.clone();
+        (wall[at], depth[at]) = (Rgb::splat(50.0), 40.0);
+        let features = Features { depth: Some([&depth, &depth]), ..Features::default() };
+        let noisy = Noisy::new(WIDTH, WIDTH, [&wall, &half], features).unwrap();
+        assert_eq!(cut(&noisy, &wall), wall);
     }
 
     #[test]
