@@ -109,7 +109,7 @@ impl Level {
             let change = |k: usize| (missing[k] / found[k]).clamp(CHANGE[0], CHANGE[1]) * gain;
             each(|k| if found[k] > 0.0 { change(k) } else { 0.0 })
         };
-        missing.iter().zip(&found).zip(gains).map(change).collect()
+        missing.par_iter().zip(&found).zip(gains).map(change).collect()
     }
 }
 
@@ -122,11 +122,11 @@ fn gains(nodes: &Nodes, noise: &[f32], missing: &[Light], found: &[Light]) -> Ve
         let light = found.iter().sum::<f64>();
         (square / (light * light + 1e-30)) as f32
     };
-    let variances: Vec<f32> = variances.iter().zip(found).map(|(v, found)| relative(*v, found)).collect();
+    let variances: Vec<f32> = variances.par_iter().zip(found).map(|(v, found)| relative(*v, found)).collect();
     let variances = blur::mean(nodes.across, &variances, REACH);
     let limited =
         |((missing, found), v): ((&Light, &Light), &f32)| relative(square(missing), found).min((MOST * v).max(LEAST));
-    let squares: Vec<f32> = missing.iter().zip(found).zip(&variances).map(limited).collect();
+    let squares: Vec<f32> = missing.par_iter().zip(found).zip(&variances).map(limited).collect();
     let squares = blur::mean(nodes.across, &squares, REACH);
     let gain =
         |(square, variance): (&f32, &f32)| if square > variance { 1.0 - f64::from(variance / square) } else { 0.0 };
@@ -177,44 +177,51 @@ impl Nodes {
     /// For each node the sum over pixels, by index and place, weighted by the hat function.
     fn gather(&self, pixel: impl Fn(usize, [Between; 2]) -> Light + Sync) -> Vec<Light> {
         let width = self.columns.len();
-        self.by_rows([0.0; 3], |sums, y, row, weight| {
+        let add = |sums: &mut [Light], (y, row): (usize, &Between)| {
             for (x, column) in self.columns.iter().enumerate() {
-                let light = pixel(y * width + x, [*column, row]);
-                let (left, right) = (weight * (1.0 - column.1), weight * column.1);
-                sums[column.0] = each(|k| sums[column.0][k] + light[k] * left);
-                sums[column.0 + 1] = each(|k| sums[column.0 + 1][k] + light[k] * right);
+                let light = pixel(y * width + x, [*column, *row]);
+                let right = each(|k| light[k] * column.1);
+                sums[column.0] = each(|k| sums[column.0][k] + (light[k] - right[k]));
+                sums[column.0 + 1] = each(|k| sums[column.0 + 1][k] + right[k]);
             }
-        })
+        };
+        self.by_rows(add, |weight| weight)
     }
 
     /// For each node the sum over pixels, weighted by the square of the hat function.
     fn gather_squared(&self, pixel: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
         let width = self.columns.len();
-        self.by_rows(0.0, |sums, y, _, weight| {
-            for (x, column) in self.columns.iter().enumerate() {
-                let (left, right) = (weight * (1.0 - column.1), weight * column.1);
-                sums[column.0] += pixel(y * width + x) * left * left;
-                sums[column.0 + 1] += pixel(y * width + x) * right * right;
+        let add = |sums: &mut [Light], (y, _): (usize, &Between)| {
+            for (x, (left, right)) in self.columns.iter().enumerate() {
+                let value = pixel(y * width + x);
+                sums[*left][0] += value * (1.0 - right) * (1.0 - right);
+                sums[*left + 1][0] += value * right * right;
             }
-        })
+        };
+        self.by_rows(add, |weight| weight * weight).into_iter().map(|[sum, ..]| sum).collect()
     }
 
-    /// Sums of all nodes, row by row. `add` adds a row of pixels, by index and place, to a row of nodes with a weight.
-    fn by_rows<T: Copy + Send + Sync>(&self, zero: T, add: impl Fn(&mut [T], usize, Between, f64) + Sync) -> Vec<T> {
+    /// Sums of all nodes, row by row. `add` adds a row of pixels to the nodes of a row; `weight` gives the weight of that
+    /// row from its hat function.
+    fn by_rows(
+        &self,
+        add: impl Fn(&mut [Light], (usize, &Between)) + Sync,
+        weight: impl Fn(f64) -> f64 + Sync,
+    ) -> Vec<Light> {
+        let mut lines = vec![[0.0; 3]; self.across * self.rows.len()];
+        lines.par_chunks_mut(self.across).zip(&self.rows).enumerate().for_each(|(y, (line, row))| add(line, (y, row)));
         let down = self.rows.last().map_or(0, |(last, _)| last + 2);
-        let row = |node: usize| {
-            let mut sums = vec![zero; self.across];
-            let start = self.rows.partition_point(|(first, _)| first + 1 < node);
-            for (y, row) in self.rows.iter().enumerate().skip(start) {
-                match node.checked_sub(row.0) {
-                    Some(0) => add(&mut sums, y, *row, 1.0 - row.1),
-                    Some(_) => add(&mut sums, y, *row, row.1),
-                    None => break,
-                }
+        let mut nodes = vec![[0.0; 3]; self.across * down];
+        nodes.par_chunks_mut(self.across).enumerate().for_each(|(node, sums)| {
+            let range = self.rows.partition_point(|(first, _)| first + 1 < node)
+                ..self.rows.partition_point(|(first, _)| *first <= node);
+            let lines = lines.chunks_exact(self.across).zip(&self.rows);
+            for (line, (first, second)) in lines.skip(range.start).take(range.len()) {
+                let weight = weight(if *first == node { 1.0 - second } else { *second });
+                sums.iter_mut().zip(line).for_each(|(sum, light)| *sum = each(|k| sum[k] + light[k] * weight));
             }
-            sums
-        };
-        (0..down).into_par_iter().flat_map_iter(row).collect()
+        });
+        nodes
     }
 
     /// Scales pixels by 1 and the interpolated changes of the nodes.
