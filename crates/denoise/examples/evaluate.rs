@@ -63,7 +63,7 @@ fn run() -> Result<(), Failure> {
         Some(path) => Some(Library::open(Some(Path::new(&path)))?),
         None => None,
     };
-    println!("| scene | samples | input | own | OIDN | of the input | removed | own, s | OIDN, s |");
+    println!("| scene | samples | input | own | OIDN | of the input | moved | own, s | OIDN, s |");
     println!("|---|---|---|---|---|---|---|---|---|");
     let mut gains = Vec::new();
     for scene in &scenes {
@@ -120,14 +120,14 @@ fn row(
     let reference = read(&folder.join("ref.pfm")).ok().map(|image| image.pixels().to_vec());
     let error = |pixels: &[Rgb]| reference.as_ref().map_or(f64::NAN, |reference| relative_error(pixels, reference));
     let input: Vec<Rgb> = mean(&loaded.colour);
-    let (own, removed, seconds) = own(&loaded, options)?;
+    let (own, moved, seconds) = own(&loaded, options)?;
     let foreign = library.map(|library| foreign(&loaded, &input, options, library)).transpose()?;
     let (foreign_error, foreign_seconds) = foreign.as_ref().map_or((f64::NAN, f64::NAN), |(p, s)| (error(p), *s));
     let (before, after) = (error(&input), error(&own));
     println!(
         "| {scene} | {samples} | {before:.5} | {after:.5} | {foreign_error:.5} | {:.3} | {:.2} % | {seconds:.2} | {foreign_seconds:.2} |",
         after / before,
-        removed * 100.0
+        moved * 100.0
     );
     if samples == 256 && reference.is_some() {
         println!("| {scene} | 128 | {:.5} | | | | | | |", error(&loaded.colour[0]));
@@ -160,7 +160,7 @@ fn own(loaded: &Loaded, options: &Options) -> Result<(Vec<Rgb>, f64, f64), Failu
         best = best.min(start.elapsed().as_secs_f64());
     }
     let denoised = result.ok_or("cancelled")?;
-    Ok((denoised.pixels, denoised.removed, best))
+    Ok((denoised.pixels, denoised.moved, best))
 }
 
 fn foreign(loaded: &Loaded, input: &[Rgb], options: &Options, library: &Library) -> Result<(Vec<Rgb>, f64), Failure> {

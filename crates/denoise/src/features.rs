@@ -60,7 +60,7 @@ fn farthest(halves: [&[f32]; 2]) -> f32 {
 }
 
 /// One half's numbers of pixel `i`.
-fn of_pixel(features: &Features, half: usize, i: usize, far: f32) -> Feature {
+pub(crate) fn of_pixel(features: &Features, half: usize, i: usize, far: f32) -> Feature {
     let albedo = features.albedo.map_or([0.0; 3], |halves| halves[half][i].to_array());
     let normal = features.normal.map_or([0.0; 3], |halves| halves[half][i].to_array());
     let depth = features.depth.map_or(0.0, |halves| {

@@ -14,14 +14,18 @@
 //!    on a grid, no choice among bandwidths, ridge instead of truncated singular values, features also in the weights.
 //! 4. The filtered halves and the unfiltered ones tell how wrong the filter is compared with the noise; by that the input is
 //!    mixed in (`blend`), so that pictures of many samples are left as they are.
+//! 5. Single bright pixels that are left are cut (`speckles`), and every neighborhood and the whole picture get the mean of the
+//!    input (`energy`).
 
 mod blend;
 mod blur;
+mod energy;
 mod features;
 mod grid;
 mod outliers;
 mod prepare;
 mod regression;
+mod speckles;
 mod strips;
 mod tile;
 mod weights;
@@ -98,8 +102,9 @@ pub struct Settings {
     /// How different colours may be, in standard deviations of their noise, to count as alike: 1 is the tried value,
     /// less keeps more noise and more detail.
     pub strength: f32,
-    /// Whether pixels that are far brighter in one half than everything around them in both are cut. They leave blotches
-    /// otherwise; what they lose is told by [`Denoised::removed`].
+    /// Whether pixels that are far brighter in one half than everything around them in both are cut, and single bright pixels
+    /// that are left after filtering. They leave blotches otherwise. Their light goes to their neighborhoods;
+    /// [`Denoised::moved`] reports how much the first of these two steps moved.
     pub cut_outliers: bool,
 }
 
@@ -114,8 +119,9 @@ impl Default for Settings {
 pub struct Denoised {
     /// Linear light, row by row from the top left.
     pub pixels: Vec<Rgb>,
-    /// The share of the picture's light (mean of the channels) that was cut as outliers, 0..1.
-    pub removed: f64,
+    /// Share of the picture's light (mean of the channels) that was moved from outliers to their neighborhoods, 0 to 1. The mean
+    /// of the picture stays that of the input.
+    pub moved: f64,
 }
 
 /// The picture without noise, on the threads of the current rayon pool.

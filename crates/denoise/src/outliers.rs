@@ -1,7 +1,8 @@
 //! Pixels that are far too bright in one half, of which neither their neighbours nor the other half know anything.
 //!
 //! A sample of a rare way of light (a firefly) carries the energy of the many pixels that got none; where it is alone,
-//! no filter can put it back, and it would become a blotch as wide as the windows. It is cut to the brightest of what is around it.
+//! no filter can put it back, and it would become a blotch as wide as the windows. It is cut to the brightest
+//! of what is around it before filtering; afterwards its light goes to its neighborhood (`energy`).
 
 use juggler_math::Rgb;
 use rayon::prelude::*;

@@ -92,7 +92,7 @@ impl Prepared {
 }
 
 /// Whether a colour can be reckoned with.
-fn is_known(colour: &Rgb) -> bool {
+pub(crate) fn is_known(colour: &Rgb) -> bool {
     colour.is_finite() && colour.map(f32::abs).max_channel() < BRIGHTEST
 }
 

@@ -4,7 +4,7 @@
 use crate::blend::blend;
 use crate::grid::{PATCH, REACH, STEP};
 use crate::prepare::Prepared;
-use crate::{Denoised, Noisy, Settings, SimdLevel, tile};
+use crate::{Denoised, Noisy, Settings, SimdLevel, energy, speckles, tile};
 
 /// Rows around a strip that its pixels depend on: windows reach a pixel from `REACH` rows away and read as far again, patches and
 /// variances from there on; the filters of features and outliers, and the neighbourhood of errors.
@@ -34,6 +34,10 @@ pub(crate) fn denoise(
         before += prepared.light[0];
         after += prepared.light[1];
     }
-    let removed = if before > 0.0 { (1.0 - after / before).max(0.0) } else { 0.0 };
-    Some(Denoised { pixels, removed })
+    if settings.cut_outliers {
+        pixels = speckles::cut(noisy, &pixels);
+    }
+    energy::conserve(noisy, &mut pixels);
+    let moved = if before > 0.0 { (1.0 - after / before).max(0.0) } else { 0.0 };
+    Some(Denoised { pixels, moved })
 }

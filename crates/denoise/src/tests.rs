@@ -130,12 +130,60 @@ fn without_features_noise_falls_too() {
     }
 }
 
+/// Sums of red, green and blue.
+fn light(pixels: &[Rgb]) -> [f64; 3] {
+    let sum = |channel: fn(&Rgb) -> f32| pixels.iter().map(|c| f64::from(channel(c))).sum();
+    [sum(|c| c.r), sum(|c| c.g), sum(|c| c.b)]
+}
+
+/// Walls with the skewed noise of few samples: most pixels too dark, some far too bright, one pixel in 200 bright in a half.
+fn sparkling_walls() -> Walls {
+    let mut walls = Walls::new(200, 120, 0.0);
+    let mut random = Random::new(11);
+    for pixel in walls.halves.iter_mut().flatten() {
+        let spread = random.range(0.0, 1.0);
+        let firefly = if random.range(0.0, 1.0) < 0.005 { random.range(10.0, 60.0) } else { 0.0 };
+        *pixel = *pixel * (3.0 * spread * spread + firefly);
+    }
+    walls
+}
+
 #[test]
 fn light_is_kept() {
-    let walls = Walls::new(120, 80, 1.0);
-    let sum = |pixels: &[Rgb]| pixels.iter().map(|c| f64::from(c.r + c.g + c.b)).sum::<f64>();
-    let ratio = sum(&walls.denoised()) / sum(&walls.input());
-    assert!((ratio - 1.0).abs() < 3e-3, "{ratio}");
+    for walls in [Walls::new(120, 80, 1.0), sparkling_walls()] {
+        for (found, wanted) in light(&walls.denoised()).into_iter().zip(light(&walls.input())) {
+            assert!((found / wanted - 1.0).abs() < 1e-5, "{found} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn blocks_lose_no_light() {
+    let walls = sparkling_walls();
+    let (denoised, input) = (walls.denoised(), walls.input());
+    for column in [0, 50, 100, 150] {
+        let block = |pixels: &[Rgb]| -> f32 {
+            (0..120).flat_map(|y| &pixels[y * 200 + column..][..50]).map(|c| c.r + c.g + c.b).sum()
+        };
+        let ratio = block(&denoised) / block(&input);
+        assert!((ratio - 1.0).abs() < 0.05, "column {column}: {ratio}");
+    }
+}
+
+#[test]
+fn no_pixel_stands_out_from_a_plain_wall() {
+    let mut walls = sparkling_walls();
+    // Fireflies in both halves.
+    for (half, brightness) in [90.0, 60.0].into_iter().enumerate() {
+        walls.halves[half][60 * 200 + 30] = Rgb::splat(brightness);
+    }
+    let pixels = walls.denoised();
+    let brightness = |x: usize, y: usize| pixels[y * 200 + x].r + pixels[y * 200 + x].g + pixels[y * 200 + x].b;
+    for (y, x) in (3..117).flat_map(|y| (3..197).map(move |x| (y, x))) {
+        let around = (y - 3..y + 4).flat_map(|v| (x - 3..x + 4).map(move |u| (u, v))).filter(|at| *at != (x, y));
+        let most = around.map(|(u, v)| brightness(u, v)).fold(0.0, f32::max);
+        assert!(brightness(x, y) < 1.5 * most, "{x} {y}: {} {most}", brightness(x, y));
+    }
 }
 
 #[test]
@@ -199,7 +247,7 @@ fn strips_do_not_show() {
     let run = |rows: usize| strips::denoise(SimdLevel::new(), &noisy, &settings, &|| false, rows).unwrap();
     let (whole, strips) = (run(200), run(20));
     assert_eq!(strips.pixels.len(), whole.pixels.len());
-    assert!((strips.removed - whole.removed).abs() < 1e-9);
+    assert!((strips.moved - whole.moved).abs() < 1e-9);
     for (i, (a, b)) in strips.pixels.iter().zip(&whole.pixels).enumerate() {
         assert!((*a - *b).map(f32::abs).max_channel() < 1e-4, "row {}: {a:?} {b:?}", i / 50);
     }
@@ -209,23 +257,23 @@ fn strips_do_not_show() {
 fn an_outlier_of_one_half_leaves_no_blotch_and_a_highlight_of_both_stays() {
     let mut walls = Walls::new(96, 64, 0.2);
     let (outlier, highlight) = (20 * 96 + 20, 40 * 96 + 70);
-    walls.halves[0][outlier] = Rgb::splat(5000.0);
-    walls.halves[0][highlight] = Rgb::splat(300.0);
-    walls.halves[1][highlight] = Rgb::splat(310.0);
+    walls.halves[0][outlier] = Rgb::splat(100.0);
+    walls.halves[0][highlight] = Rgb::splat(304.0);
+    walls.halves[1][highlight] = Rgb::splat(306.0);
     let noisy = walls.noisy(walls.features());
     let run = |cut_outliers| {
         let settings = Settings { cut_outliers, ..Settings::default() };
         denoise_unless(&noisy, &settings, &|| false).unwrap()
     };
-    let Denoised { pixels, removed } = run(true);
+    let Denoised { pixels, moved } = run(true);
     for (x, y) in [(20, 20), (19, 21), (24, 20), (28, 28)] {
         let found = pixels[y * 96 + x].r / walls.truth[y * 96 + x].r;
         assert!((found - 1.0).abs() < 0.2, "{x} {y}: {found}");
     }
-    assert!((pixels[highlight].g / 305.0 - 1.0).abs() < 0.02, "{:?}", pixels[highlight]);
+    assert!((pixels[highlight].g / 305.0 - 1.0).abs() < 0.06, "{:?}", pixels[highlight]);
     let all = walls.halves.iter().flatten().map(|c| f64::from(c.r + c.g + c.b)).sum::<f64>();
-    assert!((removed / (15_000.0 / all) - 1.0).abs() < 0.01, "{removed}");
-    assert_eq!(run(false).removed, 0.0);
+    assert!((moved / (300.0 / all) - 1.0).abs() < 0.03, "{moved}");
+    assert_eq!(run(false).moved, 0.0);
 }
 
 #[test]

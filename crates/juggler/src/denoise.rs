@@ -134,7 +134,7 @@ impl Guides {
                     self.normal[0].iter().zip(&self.normal[1]).map(|(a, b)| (*a + *b) * 0.5).collect();
                 let (color, albedo) = (both(&self.color), both(&self.albedo));
                 let pixels = library.denoise(width, height, &color, Some(&albedo), Some(&normal)).map_err(failed)?;
-                Ok(Some(Denoised { pixels, removed: 0.0 }))
+                Ok(Some(Denoised { pixels, moved: 0.0 }))
             }
         }
     }

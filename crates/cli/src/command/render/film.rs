@@ -100,13 +100,13 @@ fn samples_of(file: &str, picture: &Picture) -> Result<Vec<u32>, Failure> {
     counts::from_text(counts, tiles).ok_or_else(other)
 }
 
-/// Says how much light was cut that stood out too far to be anything but chance, where that is more than a trifle.
-pub fn tell_removed(denoised: &Denoised) {
+/// Reports how much light the denoiser moved from outliers to their neighborhoods, where that is more than a trifle.
+pub fn report_moved(denoised: &Denoised) {
     const TRIFLE: f64 = 1e-3;
-    if denoised.removed >= TRIFLE {
-        let percent = 100.0 * denoised.removed;
+    if denoised.moved >= TRIFLE {
+        let percent = 100.0 * denoised.moved;
         console::say(&format!(
-            "note: taking the noise out cut {percent:.1} % of the light, in pixels that stood out by chance"
+            "note: the denoiser moved {percent:.1} % of the light from single bright pixels to their surroundings"
         ));
     }
 }
@@ -236,7 +236,7 @@ impl Exposure<'_> {
         let denoised = guides.denoise(denoiser, library.as_deref(), control)?;
         let denoised = denoised.ok_or_else(|| Failure::System(Stopped.to_string()))?;
         if !self.session.plan.quiet {
-            tell_removed(&denoised);
+            report_moved(&denoised);
         }
         Ok(Some(denoised.pixels))
     }

@@ -1,0 +1,309 @@
+//! Energy conservation: the filtered picture gets the mean of the input, in every neighborhood and over the whole picture.
+//!
+//! The weights of the filter depend on the noise: bright samples are rare, differ most from their surroundings and count
+//! least, so a filtered picture is darker than the mean of its samples. This pass compares the input `x` with the filtered
+//! picture `y` on a grid of nodes, from fine to coarse. With the hat functions `B_c` of bilinear interpolation between
+//! the nodes, a level computes
+//!
+//! ```text
+//! t_c = g_c Σ_q B_c(q) (x_q - y_q) / Σ_p B_c(p) y_p        y_p ← y_p (1 + Σ_c B_c(p) t_c)
+//! ```
+//!
+//! so that with a gain `g_c` of 1 the sum of `y` becomes the sum of `x`, for each channel. All pixels of a neighborhood
+//! change by the same factor, which varies slowly: edges and textures stay. On coarse levels the gain is 1. On fine levels
+//! the difference is mostly the noise that the filter has removed; the gain is that of a Wiener filter, `1 - σ² / d²`, where
+//! `d²` is the square of the difference and `σ²` its variance by the halves, both averaged over neighboring nodes. A single
+//! pixel may change its neighborhood by a limited share; the light of brighter outliers goes to the larger neighborhoods of
+//! the next levels, the rest to the whole picture.
+
+use crate::prepare::is_known;
+use crate::{Noisy, blur};
+use juggler_math::Rgb;
+use rayon::prelude::*;
+
+/// A grid of nodes.
+struct Level {
+    /// Pixels from one node to the next.
+    spacing: usize,
+    /// Largest share of its neighborhood's light that a single pixel may add or remove.
+    share: f64,
+    /// Whether the gain is that of a Wiener filter instead of 1.
+    is_wiener: bool,
+}
+
+/// The grids, from fine to coarse.
+const LEVELS: [Level; 6] = [
+    Level { spacing: 2, share: 0.2, is_wiener: true },
+    Level { spacing: 4, share: 0.2, is_wiener: true },
+    Level { spacing: 8, share: 0.2, is_wiener: true },
+    Level { spacing: 16, share: 0.2, is_wiener: true },
+    Level { spacing: 64, share: 0.02, is_wiener: false },
+    Level { spacing: 256, share: 0.02, is_wiener: false },
+];
+/// Range of a node's change `t_c` at one level.
+const CHANGE: [f64; 2] = [-0.5, 1.0];
+/// Nodes to each side that differences and variances are averaged over.
+const REACH: usize = 2;
+/// Squared difference, in variances, that a single node counts for at most among its neighbors.
+const MOST: f32 = 9.0;
+/// Squared difference, in parts of the light's square, that counts even where there is no noise.
+const LEAST: f32 = 1e-9;
+/// Range of the factor for the whole picture, against pictures that are black but for rounding errors.
+const WHOLE: [f64; 2] = [0.1, 10.0];
+
+/// Red, green, blue.
+type Light = [f64; 3];
+
+/// Gives `pixels` the local and global means of the input.
+pub(crate) fn conserve(noisy: &Noisy, pixels: &mut [Rgb]) {
+    let input: Vec<Rgb> = (0..pixels.len()).into_par_iter().map(|i| input(noisy, i).unwrap_or(pixels[i])).collect();
+    let noise: Vec<f32> = (0..pixels.len()).into_par_iter().map(|i| variance(noisy, i)).collect();
+    for level in LEVELS {
+        if level.spacing < noisy.width.max(noisy.height) {
+            let nodes = Nodes::new(noisy.width, noisy.height, level.spacing);
+            let changes = level.changes(&nodes, &input, &noise, pixels);
+            nodes.scale(&changes, pixels);
+        }
+    }
+    let (wanted, found) = (total(&input), total(pixels));
+    let factor = each(|k| {
+        let factor = wanted[k] / found[k];
+        if factor.is_finite() { factor.clamp(WHOLE[0], WHOLE[1]) } else { 1.0 }
+    });
+    pixels.par_iter_mut().for_each(|pixel| *pixel = scaled(*pixel, factor));
+}
+
+/// Input of a pixel: the mean of the halves that are known.
+fn input(noisy: &Noisy, i: usize) -> Option<Rgb> {
+    let [a, b] = noisy.halves.map(|half| half.get(i).copied().filter(is_known));
+    match (a, b) {
+        (Some(a), Some(b)) => Some((a + b) * 0.5),
+        (a, b) => a.or(b),
+    }
+}
+
+/// Variance of the input, summed over the channels; zero where a half is unknown.
+fn variance(noisy: &Noisy, i: usize) -> f32 {
+    match noisy.halves.map(|half| half.get(i).copied().filter(is_known)) {
+        [Some(a), Some(b)] => {
+            let square = (a - b) * (a - b) * 0.25;
+            square.r + square.g + square.b
+        }
+        _ => 0.0,
+    }
+}
+
+impl Level {
+    /// The change `t_c` of each node.
+    fn changes(&self, nodes: &Nodes, input: &[Rgb], noise: &[f32], pixels: &[Rgb]) -> Vec<Light> {
+        let found = nodes.gather(|i, _| light(pixels[i]));
+        let missing = nodes.gather(|i, place| {
+            let (input, pixel, around) = (light(input[i]), light(pixels[i]), nodes.interpolate(&found, place));
+            each(|k| {
+                let most = self.share * around[k].max(0.0);
+                (input[k] - pixel[k]).clamp(-most, most)
+            })
+        });
+        let gains = if self.is_wiener { gains(nodes, noise, &missing, &found) } else { vec![1.0; found.len()] };
+        let change = |((missing, found), gain): ((&Light, &Light), f64)| {
+            let change = |k: usize| (missing[k] / found[k]).clamp(CHANGE[0], CHANGE[1]) * gain;
+            each(|k| if found[k] > 0.0 { change(k) } else { 0.0 })
+        };
+        missing.par_iter().zip(&found).zip(gains).map(change).collect()
+    }
+}
+
+/// Each node's share of the difference that is not noise.
+fn gains(nodes: &Nodes, noise: &[f32], missing: &[Light], found: &[Light]) -> Vec<f64> {
+    let variances = nodes.gather_squared(|i| f64::from(noise[i]));
+    let square = |light: &Light| light.iter().map(|v| v * v).sum::<f64>();
+    // Squares are relative to the light of the node.
+    let relative = |square: f64, found: &Light| {
+        let light = found.iter().sum::<f64>();
+        (square / (light * light + 1e-30)) as f32
+    };
+    let variances: Vec<f32> = variances.par_iter().zip(found).map(|(v, found)| relative(*v, found)).collect();
+    let variances = blur::mean(nodes.across, &variances, REACH);
+    let limited =
+        |((missing, found), v): ((&Light, &Light), &f32)| relative(square(missing), found).min((MOST * v).max(LEAST));
+    let squares: Vec<f32> = missing.par_iter().zip(found).zip(&variances).map(limited).collect();
+    let squares = blur::mean(nodes.across, &squares, REACH);
+    let gain =
+        |(square, variance): (&f32, &f32)| if square > variance { 1.0 - f64::from(variance / square) } else { 0.0 };
+    squares.iter().zip(&variances).map(gain).collect()
+}
+
+fn total(pixels: &[Rgb]) -> Light {
+    pixels.iter().fold([0.0; 3], |sum, pixel| each(|k| sum[k] + light(*pixel)[k]))
+}
+
+fn light(color: Rgb) -> Light {
+    color.to_array().map(f64::from)
+}
+
+fn scaled(color: Rgb, factor: Light) -> Rgb {
+    let [r, g, b] = color.to_array();
+    let scaled = |v: f32, factor: f64| (f64::from(v) * factor) as f32;
+    Rgb::new(scaled(r, factor[0]), scaled(g, factor[1]), scaled(b, factor[2]))
+}
+
+fn each(channel: impl Fn(usize) -> f64) -> Light {
+    [channel(0), channel(1), channel(2)]
+}
+
+/// Place of a row or column between two nodes: the first node, and the weight of the second.
+type Between = (usize, f64);
+
+/// Nodes of bilinear interpolation. The first and the last of a row stand on the picture's border.
+struct Nodes {
+    across: usize,
+    columns: Vec<Between>,
+    rows: Vec<Between>,
+}
+
+impl Nodes {
+    fn new(width: usize, height: usize, spacing: usize) -> Self {
+        let cells = |length: usize| ((length + spacing / 2) / spacing).max(1);
+        let places = |length: usize| -> Vec<Between> {
+            let place = |i: usize| {
+                let place = (i as f64 + 0.5) * cells(length) as f64 / length as f64;
+                (place as usize, place - place.floor())
+            };
+            (0..length).map(place).collect()
+        };
+        Self { across: cells(width) + 1, columns: places(width), rows: places(height) }
+    }
+
+    /// For each node the sum over pixels, by index and place, weighted by the hat function.
+    fn gather(&self, pixel: impl Fn(usize, [Between; 2]) -> Light + Sync) -> Vec<Light> {
+        let width = self.columns.len();
+        let add = |sums: &mut [Light], (y, row): (usize, &Between)| {
+            for (x, column) in self.columns.iter().enumerate() {
+                let light = pixel(y * width + x, [*column, *row]);
+                let right = each(|k| light[k] * column.1);
+                sums[column.0] = each(|k| sums[column.0][k] + (light[k] - right[k]));
+                sums[column.0 + 1] = each(|k| sums[column.0 + 1][k] + right[k]);
+            }
+        };
+        self.by_rows(add, |weight| weight)
+    }
+
+    /// For each node the sum over pixels, weighted by the square of the hat function.
+    fn gather_squared(&self, pixel: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+        let width = self.columns.len();
+        let add = |sums: &mut [Light], (y, _): (usize, &Between)| {
+            for (x, (left, right)) in self.columns.iter().enumerate() {
+                let value = pixel(y * width + x);
+                sums[*left][0] += value * (1.0 - right) * (1.0 - right);
+                sums[*left + 1][0] += value * right * right;
+            }
+        };
+        self.by_rows(add, |weight| weight * weight).into_iter().map(|[sum, ..]| sum).collect()
+    }
+
+    /// Sums of all nodes, row by row. `add` adds a row of pixels to the nodes of a row; `weight` gives the weight of that
+    /// row from its hat function.
+    fn by_rows(
+        &self,
+        add: impl Fn(&mut [Light], (usize, &Between)) + Sync,
+        weight: impl Fn(f64) -> f64 + Sync,
+    ) -> Vec<Light> {
+        let mut lines = vec![[0.0; 3]; self.across * self.rows.len()];
+        lines.par_chunks_mut(self.across).zip(&self.rows).enumerate().for_each(|(y, (line, row))| add(line, (y, row)));
+        let down = self.rows.last().map_or(0, |(last, _)| last + 2);
+        let mut nodes = vec![[0.0; 3]; self.across * down];
+        nodes.par_chunks_mut(self.across).enumerate().for_each(|(node, sums)| {
+            let range = self.rows.partition_point(|(first, _)| first + 1 < node)
+                ..self.rows.partition_point(|(first, _)| *first <= node);
+            let lines = lines.chunks_exact(self.across).zip(&self.rows);
+            for (line, (first, second)) in lines.skip(range.start).take(range.len()) {
+                let weight = weight(if *first == node { 1.0 - second } else { *second });
+                sums.iter_mut().zip(line).for_each(|(sum, light)| *sum = each(|k| sum[k] + light[k] * weight));
+            }
+        });
+        nodes
+    }
+
+    /// Scales pixels by 1 and the interpolated changes of the nodes.
+    fn scale(&self, changes: &[Light], pixels: &mut [Rgb]) {
+        pixels.par_chunks_mut(self.columns.len()).zip(&self.rows).for_each(|(pixels, row)| {
+            for (pixel, column) in pixels.iter_mut().zip(&self.columns) {
+                let change = self.interpolate(changes, [*column, *row]);
+                *pixel = scaled(*pixel, each(|k| 1.0 + change[k]));
+            }
+        });
+    }
+
+    /// Light of the four nodes around a place, interpolated bilinearly.
+    fn interpolate(&self, nodes: &[Light], [(x, right), (y, below)]: [Between; 2]) -> Light {
+        let at = y * self.across + x;
+        let across = |at: usize| each(|k| nodes[at][k] + (nodes[at + 1][k] - nodes[at][k]) * right);
+        let (above, under) = (across(at), across(at + self.across));
+        each(|k| above[k] + (under[k] - above[k]) * below)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Features;
+    use juggler_math::testing::Random;
+
+    const WIDTH: usize = 160;
+    const HEIGHT: usize = 120;
+
+    fn conserved(input: &[Rgb], filtered: &[Rgb]) -> Vec<Rgb> {
+        let noisy = Noisy::new(WIDTH, HEIGHT, [input, input], Features::default()).unwrap();
+        let mut pixels = filtered.to_vec();
+        conserve(&noisy, &mut pixels);
+        pixels
+    }
+
+    #[test]
+    fn each_channel_gets_the_sum_of_the_input() {
+        let mut random = Random::new(5);
+        let spike = |v: f32| if v > 0.999 { 500.0 } else { v * v };
+        let input: Vec<Rgb> = (0..WIDTH * HEIGHT).map(|_| random.rgb().map(spike)).collect();
+        let filtered: Vec<Rgb> = (0..WIDTH * HEIGHT).map(|_| Rgb::new(0.3, 0.5, 0.1) + random.rgb() * 0.1).collect();
+        let (found, wanted) = (total(&conserved(&input, &filtered)), total(&input));
+        for (found, wanted) in found.into_iter().zip(wanted) {
+            assert!((found / wanted - 1.0).abs() < 1e-6, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_block_gets_its_light_back_and_its_surroundings_stay() {
+        let block = |i: usize| (i % WIDTH).abs_diff(80) < 40 && (i / WIDTH).abs_diff(60) < 40;
+        let input = vec![Rgb::new(0.5, 1.0, 2.0); WIDTH * HEIGHT];
+        let filtered: Vec<Rgb> = (0..input.len()).map(|i| input[i] * if block(i) { 0.7 } else { 1.0 }).collect();
+        let pixels = conserved(&input, &filtered);
+        for (x, y, bound) in [(80, 60, 0.02), (70, 50, 0.05), (4, 4, 0.02), (155, 60, 0.02)] {
+            let ratio = pixels[y * WIDTH + x].g / input[0].g;
+            assert!((ratio - 1.0).abs() < bound, "{x} {y}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn an_outlier_leaves_no_blotch() {
+        let wall = vec![Rgb::WHITE; WIDTH * HEIGHT];
+        let mut half = wall.clone();
+        half[60 * WIDTH + 40] = Rgb::splat(6000.0);
+        let noisy = Noisy::new(WIDTH, HEIGHT, [&half, &wall], Features::default()).unwrap();
+        let mut pixels = wall.clone();
+        conserve(&noisy, &mut pixels);
+        let (least, most) = pixels.iter().fold((f32::MAX, 0.0_f32), |(a, b), c| (a.min(c.r), b.max(c.r)));
+        assert!(most / least < 1.05, "{least} {most}");
+        let wanted = (total(&half)[0] + total(&wall)[0]) / 2.0;
+        assert!((total(&pixels)[0] / wanted - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn pixels_without_light_or_without_a_color_change_nothing() {
+        let black = vec![Rgb::BLACK; WIDTH * HEIGHT];
+        assert_eq!(conserved(&black, &black), black);
+        let mut input = vec![Rgb::WHITE; WIDTH * HEIGHT];
+        input[7000] = Rgb::splat(f32::NAN);
+        let found = conserved(&input, &vec![Rgb::WHITE; WIDTH * HEIGHT]);
+        assert!(found.iter().all(|c| (c.r - 1.0).abs() < 1e-6));
+    }
+}
