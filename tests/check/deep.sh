@@ -53,10 +53,11 @@ deep_rays() {
   JUGGLER_HITS=1000 cargo test --release --locked -p juggler-tracer --lib precision
 }
 
-# White furnaces over whole grids of roughness, anisotropy, index of refraction and the weights of `principled`.
+# White furnaces over whole grids of every material's parameters, room furnaces of every shape that emits, and heaps of 1 to 40
+# balls with the machinery for caustics and without.
 deep_furnaces() {
   JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --lib contract::white
-  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration -- white_worlds rooms::
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration -- white_worlds:: white_kinds:: rooms:: balls::
 }
 
 # What `--max-memory` promises, by an optimized program: the check itself asks an unoptimized one.

@@ -219,6 +219,17 @@ pub fn z_test(values: &[f64], expected: f64, significance: f64) -> Result<(), St
     Err(format!("mean {mean} of {n} values, expected {expected}: {z:.2} deviations, p = {chance:.3e} < {significance}"))
 }
 
+/// Standard errors by which the mean of one of `cases` is off with a chance of 1 %, both tails (Šidák 1967).
+pub fn family_wise_deviations(cases: usize) -> f64 {
+    let level = 1.0 - fun::pow_f64(0.99, 1.0 / cases.max(1) as f64);
+    let (mut low, mut high) = (0.0, 40.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if libm::erfc(middle / std::f64::consts::SQRT_2) > level { &mut low } else { &mut high }) = middle;
+    }
+    high
+}
+
 /// Bands around z, and sectors of each: cells of equal solid angle.
 const Z_CELLS: usize = 16;
 const TURN_CELLS: usize = 32;
@@ -351,6 +362,9 @@ mod tests {
         z_test(&values, 0.5, 1e-3).unwrap();
         z_test(&values, 0.52, 1e-3).unwrap_err();
         z_test(&[0.25; 100], 0.25, 1e-3).unwrap();
+        assert!(
+            (family_wise_deviations(1) - 2.575_829).abs() < 1e-6 && (3.5..3.6).contains(&family_wise_deviations(24))
+        );
     }
 
     #[test]

@@ -46,6 +46,24 @@ impl Conductor {
         self.ggx.mean_alpha()
     }
 
+    /// f |cos θi| of single scattering where Fresnel's share is 1.
+    #[inline]
+    pub(super) fn shape(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.ggx.mirror(wo, wi).value
+    }
+
+    /// Fresnel's share at normal incidence.
+    #[inline]
+    pub(super) fn color(&self) -> Rgb {
+        self.fresnel.at(1.0)
+    }
+
+    /// Whether both alphas are the same.
+    #[inline]
+    pub(super) fn is_round(&self) -> bool {
+        self.ggx.is_round()
+    }
+
     /// Whether it is a perfect mirror's delta.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -123,12 +141,23 @@ impl Conductor {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
         }
-        let single = self.fresnel.mirrored(self.ggx.round_cos(wo), self.ggx.mean_alpha());
+        let single = self.single_albedo(wo);
         if self.multiple.is_black() {
             return single;
         }
         let average = energy::mirror_lost_average(self.ggx);
         single + self.multiple * (self.lost(wo) * average * std::f32::consts::PI)
+    }
+
+    /// Albedo of single scattering. On a stretched surface, the angles of visible microfacets depend on the slopes along `wo`: a
+    /// round surface of these slopes gives the mean of Fresnel's share, a table of stretched surfaces the loss.
+    fn single_albedo(&self, wo: Vec3) -> Rgb {
+        let alpha = self.ggx.alpha_towards(wo);
+        let round = self.fresnel.mirrored(wo.z, alpha);
+        if self.ggx.is_round() {
+            return round;
+        }
+        round * ((1.0 - self.lost(wo)) / (1.0 - energy::mirror_loss(wo.z, alpha)).max(f32::MIN_POSITIVE))
     }
 
     /// The mirror's, if it is smooth.

@@ -331,18 +331,43 @@ impl Dielectric {
         if ior == 1.0 && self.film.is_none() { Rgb::BLACK } else { self.share(cos, ior) }
     }
 
-    /// See [`Lobe::leaving`](super::Lobe::leaving).
+    /// What a microfacet with the normal `m` transmits of light along one of two directions that it mirrors into each other, and
+    /// where light of each goes; all is turned over, so that light comes from below the interface along directions above.
     #[inline]
-    pub(super) fn leaving(&self, cos: f32) -> (f32, f32) {
-        let ior = 1.0 / self.ior;
-        let out = (1.0 - (1.0 - cos * cos) / (ior * ior)).max(0.0).sqrt();
-        (1.0 - sum(self.smooth_share(cos.min(1.0), ior)) / 3.0, out)
+    pub(super) fn leaving(&self, along: [Vec3; 2], m: Vec3) -> Option<(f32, [Vec3; 2])> {
+        let [a, b] = along.map(|w| fresnel::refract(w, m, self.ior));
+        let share = self.smooth_share(along[0].dot(m).clamp(0.0, 1.0), 1.0 / self.ior);
+        Some((1.0 - sum(share) / 3.0, [a?, b?]))
     }
 
-    /// See [`Lobe::shrunk_below`](super::Lobe::shrunk_below).
+    /// The size of the cone of directions below into which the interface refracts all of those above, over the whole hemisphere:
+    /// 1 / η².
     #[inline]
     pub(super) fn shrunk_below(&self) -> f32 {
         1.0 / (self.ior * self.ior)
+    }
+
+    /// The share of light from below at an angle of this cosine that the interface transmits if it is polished.
+    #[inline]
+    pub(super) fn polished_share_below(&self, cos: f32) -> f32 {
+        1.0 - fresnel::dielectric(cos.min(1.0), 1.0 / self.ior)
+    }
+
+    /// The mean of [`Dielectric::polished_share_below`] over all directions, each weighted by its cosine.
+    pub(super) fn polished_transmittance_below(&self) -> f32 {
+        1.0 - fresnel::dielectric_average(1.0 / self.ior)
+    }
+
+    /// Whether both alphas are the same.
+    #[inline]
+    pub(super) fn is_round(&self) -> bool {
+        self.ggx.is_round()
+    }
+
+    /// Alpha along x and y.
+    #[inline]
+    pub(super) fn alpha(&self) -> Vec2 {
+        self.ggx.alpha()
     }
 
     /// Mirrored and refracted, if it is smooth; not those of no weight.

@@ -69,17 +69,6 @@ impl Ggx {
         if self.is_round() { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
     }
 
-    /// The cosine of `w`, above, where the surface is stretched until both alphas are their mean: slopes along `w`, on
-    /// which masking depends, are then what they were.
-    #[inline]
-    pub fn round_cos(self, w: Vec3) -> f32 {
-        if self.is_round() {
-            return w.z.abs();
-        }
-        let (x, y, mean) = (self.x * w.x, self.y * w.y, 0.5 * (self.x * self.x + self.y * self.y));
-        (w.z * w.z / (w.z * w.z + (x * x + y * y) / mean).max(f32::MIN_POSITIVE)).sqrt()
-    }
-
     /// One alpha that stands for both where light goes along `w`: at a grazing angle what counts is the slopes along it,
     /// head on both alike.
     #[inline]
@@ -87,8 +76,9 @@ impl Ggx {
         if self.is_round() {
             return self.x;
         }
-        let (x2, y2, sin2) = (self.x * self.x, self.y * self.y, (w.x * w.x + w.y * w.y).min(1.0));
-        (x2 * w.x * w.x + y2 * w.y * w.y + 0.5 * (x2 + y2) * (1.0 - sin2)).sqrt()
+        let (x2, y2, z2) = (self.x * self.x, self.y * self.y, (w.z * w.z).min(1.0));
+        let along = (1.0 + z2) * (x2 * w.x * w.x + y2 * w.y * w.y);
+        (along + 0.5 * (x2 + y2) * (z2 * z2)).sqrt()
     }
 
     /// Whether both alphas are the same.

@@ -157,35 +157,6 @@ impl Lobe {
         }
     }
 
-    /// The share of light that a polished interface transmits upwards, seen from below at an angle of this cosine, and the cosine
-    /// at which it leaves; none for what is no glass.
-    #[inline]
-    pub(crate) fn leaving(&self, cos: f32) -> (f32, f32) {
-        match self {
-            Self::Dielectric(lobe) => lobe.leaving(cos),
-            Self::Thin(lobe) => lobe.leaving(cos),
-            _ => (0.0, 0.0),
-        }
-    }
-
-    /// The size of the cone of directions below into which glass transmits all of those above, over the whole hemisphere: 1 / η².
-    #[inline]
-    pub(crate) fn shrunk_below(&self) -> f32 {
-        match self {
-            Self::Dielectric(lobe) => lobe.shrunk_below(),
-            _ => 1.0,
-        }
-    }
-
-    /// The share of light along `wo` that glass transmits, rough or polished, but for its color.
-    pub(crate) fn transmitted(&self, wo: Vec3) -> f32 {
-        match self {
-            Self::Dielectric(lobe) => lobe.parts(wo)[1],
-            Self::Thin(lobe) => lobe.parts(wo)[1],
-            _ => 0.0,
-        }
-    }
-
     /// Whether there are only deltas.
     #[inline]
     pub fn is_specular(&self) -> bool {
@@ -227,6 +198,12 @@ impl Lobe {
             _ => 0.0,
         };
         (1.5 * alpha.sqrt() - 0.1).clamp(0.0, 0.92)
+    }
+
+    /// Whether its albedo depends on the azimuth.
+    #[inline]
+    pub(crate) fn is_stretched(&self) -> bool {
+        matches!(self, Self::Conductor(lobe) if !lobe.is_round())
     }
 
     /// Whether there is any delta.

@@ -171,7 +171,7 @@ impl Principled {
             border.film = film;
             bsdf.push_scaled(border, weight);
         }
-        bsdf.push_return(self.base_color, self.alpha(), weight);
+        bsdf.push_return(self.base_color, weight);
     }
 
     /// Plastic, whose body light from below meets without the coat; `ior` is that of what refracts light, below over above.

@@ -35,7 +35,7 @@ struct Weighted {
     scale: f32,
     /// How much of what comes below it dims: 0 of what is no layer.
     cover: f32,
-    /// Of a glossy lobe in layers, and of a returning one: how much of it spreads light like a matt one, 0 to 1.
+    /// Of a glossy lobe in layers: how much of it spreads light like a matt one, 0 to 1. Of a returning one: the even share of h.
     spread: f32,
     role: Role,
     lobe: Lobe,
@@ -150,7 +150,8 @@ impl Bsdf {
 
     /// What all layers leave of even light.
     fn mean_left(&self) -> f32 {
-        mean(|w| self.lobes.iter().fold(1.0, |left, one| left * one.leaves(w)))
+        let is_stretched = self.lobes.iter().any(|one| one.cover > 0.0 && one.lobe.is_stretched());
+        mean(is_stretched, |w| self.lobes.iter().fold(1.0, |left, one| left * one.leaves(w)))
     }
 
     /// The sum of f |cos θi|, without deltas.
@@ -171,7 +172,7 @@ impl Bsdf {
         match self.lobes.as_slice() {
             [] => (Rgb::BLACK, 0.0),
             [one] => {
-                let (value, pdf) = self.eval_pdf_of_one(0, one, wo, wi);
+                let (value, pdf) = self.eval_pdf_of_one(one, wo, wi);
                 (value * one.weight, pdf)
             }
             _ => self.eval_pdf_of_many(&self.shares(wo), wo, wi, None),
@@ -186,7 +187,7 @@ impl Bsdf {
         match self.lobes.as_slice() {
             [] => None,
             [one] => {
-                let sample = self.sample_of_one(0, one, wo, u, choice)?;
+                let sample = self.sample_of_one(one, wo, u, choice)?;
                 Some(BsdfSample { weight: sample.weight * one.weight, ..sample })
             }
             _ => self.sample_one_of_many(wo, u, choice),
@@ -207,13 +208,18 @@ impl Bsdf {
         }
         let (index, share, x) = picked?;
         let one = self.lobes.get(index)?;
-        let sample = self.sample_of_one(index, one, wo, Vec2::new(x, u.y), choice)?;
+        let u = Vec2::new(x, u.y);
+        let returning = self.returning(index).filter(|_| wo.z < 0.0);
+        let sample = match returning {
+            Some(returning) => self.sample_under_layers(index, returning, wo, u, choice)?,
+            None => self.sample_of_one(one, wo, u, choice)?,
+        };
         if sample.scatter == Scatter::Specular {
             let weight = sample.weight * (one.weight * self.dimming(index, wo, sample.wi) / share);
             return Some(BsdfSample { weight, pdf: sample.pdf * share, ..sample });
         }
-        let own = (sample.weight * sample.pdf, sample.pdf);
-        let (value, pdf) = self.eval_pdf_of_many(&shares, wo, sample.wi, Some((index, own)));
+        let own = (index, (sample.weight * sample.pdf, sample.pdf));
+        let (value, pdf) = self.eval_pdf_of_many(&shares, wo, sample.wi, returning.is_none().then_some(own));
         (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, pdf, ..sample })
     }
 
@@ -236,10 +242,16 @@ impl Bsdf {
         for (index, (one, share)) in self.lobes.iter().zip(shares).enumerate() {
             let (part, pdf) = match known {
                 Some((same, known)) if same == index => known,
-                _ => self.eval_pdf_of_one(index, one, wo, wi),
+                _ => self.eval_pdf_of_one(one, wo, wi),
             };
-            value += part * (one.weight * one.dimmed(wo, wi, left_o, left_i));
-            density += pdf * share;
+            let dimming = one.dimmed(wo, wi, left_o, left_i);
+            value += part * (one.weight * dimming);
+            density += match one.role.glass().and_then(|glass| shares.get(glass)) {
+                Some(share) => pdf * share,
+                // Some samples of glass become those of the lobe that returns light below.
+                None if wo.z < 0.0 && wi.z > 0.0 && self.returning(index).is_some() => pdf * share * dimming,
+                None => pdf * share,
+            };
             if one.cover > 0.0 {
                 (left_o, left_i) = (left_o * one.leaves(wo), left_i * one.leaves(wi));
             }
@@ -258,8 +270,8 @@ impl Bsdf {
     fn shares(&self, wo: Vec3) -> [f32; MAX_LOBES] {
         let mut shares = [0.0; MAX_LOBES];
         let (mut sum, mut left) = (0.0, 1.0);
-        for (index, (share, one)) in shares.iter_mut().zip(&self.lobes).enumerate() {
-            let albedo = self.albedo_of_one(index, one, wo);
+        for (share, one) in shares.iter_mut().zip(&self.lobes) {
+            let albedo = self.albedo_of_one(one, wo);
             *share = super::lobe::sum(albedo) * one.weight * left;
             sum += *share;
             if one.cover > 0.0 && wo.z > 0.0 {
@@ -276,8 +288,8 @@ impl Bsdf {
     /// of radiance that crosses a border): an estimate within a few percent, for denoisers and picking lobes.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         let mut left = 1.0;
-        self.lobes.iter().enumerate().fold(Rgb::BLACK, |sum, (index, one)| {
-            let sum = sum + self.albedo_of_one(index, one, wo) * (one.weight * left);
+        self.lobes.iter().fold(Rgb::BLACK, |sum, one| {
+            let sum = sum + self.albedo_of_one(one, wo) * (one.weight * left);
             left *= one.leaves(wo);
             sum
         })
@@ -312,7 +324,7 @@ impl Bsdf {
     pub fn deltas(&self, wo: Vec3) -> ArrayVec<BsdfSample, MAX_DELTAS> {
         let mut deltas = ArrayVec::new();
         for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.has_specular()) {
-            for delta in self.deltas_of_one(index, one, wo) {
+            for delta in self.deltas_of_one(one, wo) {
                 let weight = one.weight * self.dimming(index, wo, delta.wi);
                 let full = deltas.try_push(BsdfSample { weight: delta.weight * weight, ..delta });
                 debug_assert!(full.is_ok(), "more than {MAX_DELTAS} deltas");
@@ -322,9 +334,10 @@ impl Bsdf {
     }
 }
 
-/// The mean over directions above, each weighted by its cosine, of what depends on the cosine: ∫ 2 μ f(μ) dμ = ∫ 4 s³ f(s²) ds
-/// by Gauss and Legendre's five places.
-fn mean(of: impl Fn(Vec3) -> f32) -> f32 {
+/// The mean over directions above, each weighted by its cosine, of a function of the cosine: ∫ 2 μ f(μ) dμ = ∫ 4 s³ f(s²) ds
+/// by Gauss and Legendre's five places. A function that also depends on the azimuth, as stretched surfaces do, is taken at
+/// 22.5 and 67.5 degrees, others at 45.
+fn mean(is_stretched: bool, of: impl Fn(Vec3) -> f32) -> f32 {
     const PLACES: [(f32, f32); 5] = [
         (0.046_910_077, 0.118_463_44),
         (0.230_765_34, 0.239_314_34),
@@ -332,9 +345,16 @@ fn mean(of: impl Fn(Vec3) -> f32) -> f32 {
         (0.769_234_66, 0.239_314_34),
         (0.953_089_9, 0.118_463_44),
     ];
+    // Squares of the cosine of 45 and of 22.5 degrees.
+    let (near, scale) = if is_stretched { (0.853_553_4, 0.5) } else { (0.5, 1.0) };
     PLACES.iter().fold(0.0, |sum, (s, weight)| {
         let cos = s * s;
-        let along = ((1.0 - cos * cos) * 0.5).max(0.0).sqrt();
-        sum + weight * 4.0 * s * cos * of(Vec3::new(along, along, cos))
+        let sin2 = 1.0 - cos * cos;
+        let (x, y) = ((sin2 * near).max(0.0).sqrt(), (sin2 * (1.0 - near)).max(0.0).sqrt());
+        let mut value = of(Vec3::new(x, y, cos));
+        if is_stretched {
+            value += of(Vec3::new(y, x, cos));
+        }
+        sum + weight * 4.0 * s * cos * value * scale
     })
 }

@@ -167,19 +167,6 @@ impl ThinDielectric {
         once + (self.reflection * average + self.transmission * (1.0 - average)) * lost
     }
 
-    /// The shares of light along `wo` that are mirrored and that go through, but for their colors.
-    pub(super) fn parts(&self, wo: Vec3) -> [f32; 2] {
-        let white = Self { reflection: Rgb::WHITE, transmission: Rgb::BLACK, ..*self };
-        let (mirrored, all) = (white.albedo(wo), white.tinted(Rgb::WHITE, Rgb::WHITE).albedo(wo));
-        [sum(mirrored) / 3.0, sum(all - mirrored) / 3.0]
-    }
-
-    /// See [`Lobe::leaving`](super::Lobe::leaving).
-    #[inline]
-    pub(super) fn leaving(&self, cos: f32) -> (f32, f32) {
-        (1.0 - sum(self.share(cos.min(1.0))) / 3.0, cos)
-    }
-
     /// Mirrored and straight on, if it is smooth; not those of no weight.
     pub fn deltas(&self, wo: Vec3) -> Deltas {
         if !self.is_smooth() || wo.z == 0.0 {

@@ -19,4 +19,5 @@ mod snippets;
 mod strategies;
 mod threads;
 mod views;
+mod white_kinds;
 mod white_worlds;

@@ -128,6 +128,11 @@ pub struct Measured {
     pub sigma: f64,
 }
 
+/// Whether all cases are asked for (`check.sh deep furnaces`); the check takes a few of them.
+pub fn is_deep() -> bool {
+    std::env::var_os("JUGGLER_FURNACES").is_some()
+}
+
 /// What rounding to single precision along a path may do to a mean.
 const ROUNDING: f64 = 1e-4;
 
@@ -153,9 +158,15 @@ impl Measured {
     /// Two estimates of the same: three standard errors of their difference (Welch's t at so many degrees of freedom).
     #[track_caller]
     pub fn equals(self, other: Self, what: &str) {
+        self.equals_within(other, 3.0, what);
+    }
+
+    /// Two estimates of the same, which chance sets apart by less than so many standard errors: see [`family_wise_deviations`](juggler_math::testing::family_wise_deviations).
+    #[track_caller]
+    pub fn equals_within(self, other: Self, deviations: f64, what: &str) {
         let sigma = (self.sigma * self.sigma + other.sigma * other.sigma).sqrt();
         assert!(sigma < 0.02 * self.mean.abs(), "{what}: too noisy: {self:?}, {other:?}");
-        let allowed = 3.0 * sigma + ROUNDING * self.mean.abs();
+        let allowed = deviations * sigma + ROUNDING * self.mean.abs();
         assert!((self.mean - other.mean).abs() <= allowed, "{what}: {self:?}, {other:?}");
     }
 }

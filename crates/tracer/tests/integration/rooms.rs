@@ -3,7 +3,7 @@
 //! from inside and outside, in many places, by every sampling strategy; and flat emitters in their
 //! own plane, where rounding decides on which side a point lies.
 
-use crate::probe::{Measured, Scene, camera, json, looking, measure, path, picture};
+use crate::probe::{Measured, Scene, camera, is_deep, json, looking, measure, path, picture};
 use juggler_bvh::simd_levels;
 use juggler_math::testing::Random;
 use juggler_math::{Rgb, Transform, Vec3};
@@ -32,7 +32,7 @@ enum Form {
     Closed,
     /// Walls whose front is inside.
     FacingIn,
-    /// Light goes around or through it.
+    /// Light goes around or through it, or it has no end.
     Open,
 }
 
@@ -102,6 +102,8 @@ fn rooms() -> Vec<Room> {
         one("cuboid", r#"{"cuboid": {"min": [-1, -1, -1], "max": [1, 1, 1]}}"#, Form::Closed, false),
         one("cylinder", r#"{"cylinder": {"radius": 1, "y_min": -1, "y_max": 1}}"#, Form::Closed, false),
         one("tube", r#"{"cylinder": {"radius": 1, "y_min": -1, "y_max": 1, "capped": false}}"#, Form::Open, false),
+        one("endless tube", r#"{"tube": {"radius": 1}}"#, Form::Open, false),
+        one("plane", r#"{"plane": {}}"#, Form::Open, false),
         one("disk", r#"{"disk": {"radius": 1}}"#, Form::Open, false),
         one("ring", r#"{"disk": {"radius": 1, "inner_radius": 0.5}}"#, Form::Open, false),
         one("rectangle", r#"{"rectangle": {"size": [2, 2]}}"#, Form::Open, true),
@@ -213,11 +215,6 @@ impl Case<'_> {
         let Self { room, place, albedo, sampling, light_samples, .. } = self;
         format!("{}, {}, albedo {albedo}, {sampling}, {light_samples} light samples", room.name, place.0)
     }
-}
-
-/// Whether all albedos and strategies are asked for; in the check it is one of each.
-fn is_deep() -> bool {
-    std::env::var_os("JUGGLER_FURNACES").is_some()
 }
 
 #[test]

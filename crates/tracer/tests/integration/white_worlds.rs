@@ -2,34 +2,30 @@
 //! it, from within, where radiance is n² times as large. With `JUGGLER_FURNACES=all` over a whole grid: `check.sh deep
 //! furnaces`.
 
-use crate::probe::{Measured, Scene, path, read, square};
+use crate::probe::{Measured, Scene, is_deep, path, read, square};
 use juggler_math::Vec3;
+use juggler_math::testing::family_wise_deviations;
 use juggler_tracer::camera::AnyCamera;
 
 /// How far a mean may be off.
 const NEAR: f64 = 0.002;
-/// Chance of a false alarm in all cases of a test together.
-const SIGNIFICANCE: f64 = 0.01;
-
-fn is_deep() -> bool {
-    std::env::var_os("JUGGLER_FURNACES").is_some()
-}
-
-/// A bound on how many standard errors the mean of one of `cases` may be off by chance: Šidák's level, and Chernoff's bound
-/// on the tails of a normal distribution.
-fn deviations(cases: usize) -> f64 {
-    let level = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / cases as f64);
-    (2.0 * (2.0 / level).ln()).sqrt()
-}
-
 /// A picture of a ball of radius 1 at the origin that covers all of it, by pixel.
 fn ball(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
-    let world = Scene::new().with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
     let camera = if is_within {
-        r#"{"perspective": {"eye": [0.3, 0.2, 0.1], "look_at": [0.5, -0.1, 1], "vertical_fov_degrees": 100}}"#
+        WITHIN
     } else {
         r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 1.41}}"#
     };
+    ball_by(camera, Scene::new(), material, edge, samples)
+}
+
+/// A camera inside the ball.
+pub const WITHIN: &str =
+    r#"{"perspective": {"eye": [0.3, 0.2, 0.1], "look_at": [0.5, -0.1, 1], "vertical_fov_degrees": 100}}"#;
+
+/// A picture by a camera of that ball, of a material that may name textures of the scene.
+pub fn ball_by(camera: &str, scene: Scene, material: &str, edge: u32, samples: u32) -> Vec<f64> {
+    let world = scene.with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
     // Light may be caught for long; roulette would only bring noise.
     let integrator = path(r#""max_depth": 1000"#);
     square(&world, &read::<AnyCamera>(camera), &*integrator, edge, samples)
@@ -76,7 +72,7 @@ fn glasses() -> Vec<Glass> {
 fn check(what: &str, pixels: &[f64], cases: usize) -> Result<(), String> {
     let (Measured { mean, sigma }, most) = (Measured::of(pixels), pixels.iter().copied().fold(0.0, f64::max));
     println!("{what}: mean {mean:.5} ± {sigma:.5}, brightest {most:.4}");
-    let is_near = (mean - 1.0).abs() <= NEAR + deviations(cases) * sigma && sigma < 0.5 * NEAR;
+    let is_near = (mean - 1.0).abs() <= NEAR + family_wise_deviations(cases) * sigma && sigma < 0.5 * NEAR;
     if is_near && most <= 1.5 { Ok(()) } else { Err(format!("{what}: {mean} ± {sigma}, brightest {most}")) }
 }
 
@@ -133,7 +129,7 @@ fn principled_glass_and_what_lies_over_it_vanishes() {
         let material = format!(r#"{{"principled": {{"base_color": [1, 1, 1], {numbers}}}}}"#);
         let Measured { mean, sigma } = Measured::of(&ball(&material, false, 32, 144));
         println!("{material}: {mean:.5} ± {sigma:.5}");
-        let allowed = deviations(materials.len()) * sigma;
+        let allowed = family_wise_deviations(materials.len()) * sigma;
         assert!(
             sigma < 0.002 && mean >= 0.99 - allowed && mean <= 1.0 + NEAR + allowed,
             "{material}: {mean} ± {sigma}"

@@ -1,7 +1,7 @@
 //! Energy and reciprocity over a grid of roughness, index of refraction and angle.
 
 use super::*;
-use crate::bsdf::{Conductor, Dielectric, Fresnel, ThinDielectric};
+use crate::bsdf::{Conductor, Dielectric, Fresnel, Principled, ThinDielectric};
 
 const ALPHAS: [f32; 6] = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
 const IORS: [f32; 6] = [1.1, 1.33, 1.5, 2.0, 2.4, 4.0];
@@ -85,6 +85,21 @@ fn values_of_clear_borders_keep_all_light_and_add_none() {
                 let near = if alpha.x == alpha.y { 0.01 } else { 0.03 };
                 assert!((energy - 1.0).abs() < near, "{alpha} {ior} {wo}: {energy}");
             }
+        }
+    }
+}
+
+/// What layers return into rough glass by their values, which samples need not follow to the letter.
+#[test]
+fn values_of_glass_under_layers_keep_light_on_average() {
+    let white = Principled { transmission: 1.0, sheen_roughness: 0.5, ..Principled::default() };
+    for (clearcoat, sheen) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+        for roughness in [0.55, 0.9] {
+            let numbers = Principled { clearcoat, sheen_color: Rgb::splat(sheen), roughness, ..white };
+            let bsdf = Bsdf::with_lobes(|bsdf| numbers.add_lobes(1.5, bsdf));
+            let cosines = (0..6u8).map(|i| ((f32::from(i) + 0.5) / 6.0).sqrt());
+            let mean = cosines.map(|cos| integral(&bsdf, towards(-cos), 1.5)).sum::<f64>() / 6.0;
+            assert!((mean - 1.0).abs() < 0.01, "{clearcoat} {sheen} {roughness}: {mean}");
         }
     }
 }
