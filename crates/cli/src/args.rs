@@ -7,6 +7,8 @@ use clap::{Args as Arguments, Parser};
 use juggler::Denoiser;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::tracer::film::Rect;
+use std::ffi::OsString;
+use std::time::Duration;
 
 /// A ray tracer whose pictures are the same to the bit everywhere.
 #[derive(Debug, Parser)]
@@ -147,8 +149,8 @@ pub struct RenderArgs {
     pub noise: Option<f32>,
 
     /// Stop after so many seconds of rendering; `--samples` is then the most
-    #[arg(long, value_name = "SECONDS", value_parser = value::seconds, help_heading = "Picture")]
-    pub time: Option<f64>,
+    #[arg(long, value_name = "SECONDS", value_parser = value::duration, help_heading = "Picture")]
+    pub time: Option<Duration>,
 
     /// Take as many samples everywhere as a picture or film part did that was ended by `--time`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "noise", "time"], help_heading = "Picture")]
@@ -190,6 +192,27 @@ pub struct RenderArgs {
     pub max_memory: Option<u64>,
 }
 
+/// Flags whose value may be omitted, with the value that they then have and a test of values.
+const OPTIONAL_VALUES: [(&str, &str, fn(&str) -> bool); 2] = [
+    ("--denoise", "own", |word| value::denoiser(word).is_ok()),
+    ("--fireflies", "10", |word| word.parse::<u32>().is_ok()),
+];
+
+/// The words of a command line with omitted values filled in: `--denoise scene.json` denoises by
+/// default and leaves the scene to be read as the scene.
+pub fn with_optional_values(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut words: Vec<OsString> = words.into_iter().collect();
+    let end = words.iter().position(|word| word == "--").unwrap_or(words.len());
+    for at in 0..end {
+        let flag = OPTIONAL_VALUES.iter().find(|(flag, ..)| words[at] == *flag);
+        let Some((flag, default, is_value)) = flag else { continue };
+        if !words.get(at + 1).and_then(|next| next.to_str()).is_some_and(is_value) {
+            words[at] = format!("{flag}={default}").into();
+        }
+    }
+    words
+}
+
 #[cfg(test)]
 impl RenderArgs {
     /// As `juggler render` reads these words.
@@ -200,5 +223,26 @@ impl RenderArgs {
             render: RenderArgs,
         }
         Line::try_parse_from(["render"].into_iter().chain(words)).map(|line| line.render)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filled(line: &str) -> String {
+        let words = with_optional_values(line.split(' ').map(OsString::from));
+        words.into_iter().map(|word| word.into_string().unwrap()).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn optional_values_leave_the_scene_alone() {
+        assert_eq!(filled("render --denoise scene.json -q"), "render --denoise=own scene.json -q");
+        assert_eq!(filled("render scene.json --denoise"), "render scene.json --denoise=own");
+        assert_eq!(filled("render --denoise oidn scene.json"), "render --denoise oidn scene.json");
+        assert_eq!(filled("render --denoise=oidn scene.json"), "render --denoise=oidn scene.json");
+        assert_eq!(filled("probe --fireflies juggler"), "probe --fireflies=10 juggler");
+        assert_eq!(filled("probe --fireflies 20 juggler"), "probe --fireflies 20 juggler");
+        assert_eq!(filled("render -- --denoise"), "render -- --denoise");
     }
 }

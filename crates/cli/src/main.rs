@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let mut parser = args::Args::command().color(console::color_choice());
-    let parsed = parser.try_get_matches_from_mut(std::env::args_os());
+    let parsed = parser.try_get_matches_from_mut(args::with_optional_values(std::env::args_os()));
     let args = match parsed.and_then(|matches| args::Args::from_arg_matches(&matches)) {
         Ok(args) => args,
         Err(error) => {

@@ -120,7 +120,7 @@ impl Plan {
             layers_output: args.aov_output,
             product,
             reel,
-            time: args.time.map(Duration::from_secs_f64),
+            time: args.time,
             samples_from: args.samples_from,
             checkpoint,
             shard,
@@ -221,7 +221,7 @@ fn settings(args: &RenderArgs, product: Product) -> Settings {
         limit: match (args.noise, args.time, &args.samples_from) {
             (Some(level), ..) => Limit::Noise(level),
             (_, None, None) => Limit::Samples,
-            (None, seconds, _) => Limit::Time { seconds: seconds.unwrap_or(0.0) },
+            (None, time, _) => Limit::Time { seconds: time.map_or(0.0, |time| time.as_secs_f64()) },
         },
         crop: if product == Product::Part { None } else { args.crop },
         curve: args.tone.clone(),

@@ -6,11 +6,16 @@ use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::scene::compile::MAX_SHUTTER;
 use juggler::tracer::film::{BLOCK, Rect};
 use std::ops::Range;
+use std::time::Duration;
 
 /// Largest width and height.
 const MAX_EDGE: u32 = 65_536;
 /// Most samples of a pixel.
 const MAX_SAMPLES: u32 = 16_777_216;
+/// Most frames of one command: as many as an animation may have.
+const MAX_FRAMES: u32 = 1_000_000;
+/// Longest time that a render may be given, in seconds (over 30 years).
+const MAX_DURATION: f64 = 1e9;
 
 /// `640x360`: width and height in pixels.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
@@ -115,6 +120,9 @@ pub fn frames(text: &str) -> Result<FrameRange, String> {
         Some(end) if end <= first => {
             Err(format!("no frame is in {first}..{end}: a range ends before its second number"))
         }
+        Some(end) if end - first > MAX_FRAMES => {
+            Err(format!("{first}..{end} has {} frames; at most {MAX_FRAMES} are allowed", end - first))
+        }
         _ => Ok(FrameRange { first, end }),
     }
 }
@@ -205,6 +213,14 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// How long a render may take, from 0 to [`MAX_DURATION`] seconds.
+pub fn duration(text: &str) -> Result<Duration, String> {
+    match seconds(text) {
+        Ok(seconds) if seconds <= MAX_DURATION => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err(format!("a duration is a number of seconds from 0 to {MAX_DURATION:e}, such as 90")),
+    }
+}
+
 /// A number that a difference may reach.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -256,6 +272,8 @@ mod tests {
         for wrong in ["", "5", "5..5", "6..5", "a..b", "1...3", "-1..4"] {
             assert!(frames(wrong).is_err(), "{wrong}");
         }
+        assert_eq!(frames("5..1000005"), Ok(FrameRange { first: 5, end: Some(1_000_005) }));
+        assert!(frames("0..4294967295").is_err_and(|message| message.contains("at most 1000000")));
     }
 
     #[test]
@@ -283,6 +301,13 @@ mod tests {
     #[test]
     fn times_and_tolerances() {
         assert_eq!(seconds("1.5"), Ok(1.5));
+        assert_eq!(
+            (duration("1.5"), duration("1e9")),
+            (Ok(Duration::from_millis(1500)), Ok(Duration::from_secs(1_000_000_000)))
+        );
+        for wrong in ["1e20", "1000000001", "-1", "nan", "inf", "soon"] {
+            assert!(duration(wrong).is_err_and(|message| message.contains("such as 90")), "{wrong}");
+        }
         assert_eq!(tolerance("0"), Ok(0.0));
         for wrong in ["", "-1", "nan", "x"] {
             assert!(seconds(wrong).is_err() && tolerance(wrong).is_err(), "{wrong}");

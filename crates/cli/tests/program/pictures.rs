@@ -1,6 +1,6 @@
 //! What `juggler render` writes, and where.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, wait_until};
 use juggler::imaging;
 use juggler::math::Image;
 use std::fs::{self, File};
@@ -160,4 +160,19 @@ fn a_converted_scene_is_the_same_picture() {
     assert_eq!(folder.hash("ball.json --frame 3"), folder.hash("later.json"));
     let run = folder.good("convert juggler -");
     assert!(run.stdout.starts_with('{') && run.stdout.contains("\"version\": 1"), "{}", run.stdout);
+}
+
+/// Transforms that stretch a flat shape beyond what single precision can invert once made a ray meet
+/// the same shape for ever.
+#[test]
+fn extreme_scales_end() {
+    let folder = Folder::new();
+    let shapes = ["\"disk\"", "\"rectangle\"", r#"{"triangle": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 0, 1]]}}"#];
+    for (shape, scale) in shapes.iter().flat_map(|shape| ["1e24", "1e27", "1e30"].map(|scale| (shape, scale))) {
+        let object = format!(r#"{{"shape": {shape}, "transform": [{{"scale": [1, {scale}, 1]}}]}}"#);
+        fs::write(folder.path("flat.json"), format!(r#"{{"version": 1, "objects": [{object}]}}"#)).unwrap();
+        let mut child = folder.command("render flat.json --size 8x8 --samples 1 -q").spawn().unwrap();
+        wait_until("the render ends", || child.try_wait().unwrap().is_some());
+        assert!(child.wait().unwrap().success(), "{shape}, {scale}");
+    }
 }

@@ -82,13 +82,25 @@ impl<'s> Reader<'s> {
             self.complete = false;
             return None;
         };
-        let Some(include) = Arc::make_mut(members).shift_remove("include") else { return Some(tree) };
+        let members = Arc::make_mut(members);
+        if let Some(schema) = members.shift_remove("$schema") {
+            self.check_schema(&schema.node);
+        }
+        let Some(include) = members.shift_remove("include") else { return Some(tree) };
         for named in self.names(&include.node) {
             if let Some(other) = self.included(named, id) {
                 self.merge(&mut tree, other);
             }
         }
         Some(tree)
+    }
+
+    /// Checks that `$schema`, which tells editors where the scene format's schema is, holds an address.
+    fn check_schema(&mut self, schema: &Node) {
+        if schema.as_str().is_none() {
+            let message = format!("expected the address of the scene format's JSON Schema, found {}", schema.kind());
+            self.findings.push(Finding::error(message).on(schema.place));
+        }
     }
 
     /// The strings of `include`: one, or an array of them.

@@ -6,7 +6,8 @@ use serde_json::{Map, Value, json};
 /// Definitions whose numbers come before all expressions, or that say themselves where these may stand.
 const PLAIN: [&str; 3] = ["Animation", "Variable", "Component"];
 /// Fields of a scene whose keys are names, and others where no value form may stand.
-const NAMED: [&str; 11] = [
+const NAMED: [&str; 12] = [
+    "$schema",
     "version",
     "title",
     "description",
@@ -42,9 +43,12 @@ pub fn published() -> Value {
     });
     if let Some(root) = root.as_object_mut() {
         let version = json!({"description": "Version of the format.", "const": 1});
+        let schema_address = json!({"description": "Address of this schema, for editors; the program does not read it.",
+            "type": "string"});
         let include = json!({"description": "Other scene files, relative to this one.",
             "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]});
         if let Some(properties) = root.get_mut("properties").and_then(Value::as_object_mut) {
+            properties.insert("$schema".into(), schema_address);
             properties.insert("version".into(), version);
             properties.insert("include".into(), include);
         }

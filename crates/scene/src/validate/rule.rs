@@ -89,6 +89,9 @@ pub struct Numbers {
     pub below: Option<f64>,
 }
 
+/// Largest double below 2^64. It stands for all whole numbers from there to 2^64 - 1, which doubles do not tell apart.
+pub const MOST_U64: f64 = 18_446_744_073_709_549_568.0;
+
 /// Every rule; the first is that of a whole scene.
 static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| {
     let mut builder = Builder { schema: Schema::get(), rules: Vec::new(), known: BTreeMap::new() };
@@ -233,18 +236,20 @@ impl Types {
 
 impl Numbers {
     fn of(schema: &Value) -> Self {
-        let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
         let format = schema.get("format").and_then(Value::as_str).unwrap_or_default();
+        let single = format == "float";
+        // A limit of a 32-bit number is rounded as the number itself is, so that the limit's own value is allowed.
+        let rounded = |bound: f64| if single { f64::from(bound as f32) } else { bound };
+        let bound = |key: &str| schema.get(key).and_then(Value::as_f64).map(rounded);
         // The largest number of an integer type is left to the format's name.
         let largest = match format {
             "uint32" => Some(u32::MAX.into()),
-            // The largest double below 2^64.
-            "uint64" => Some(18_446_744_073_709_549_568.0),
+            "uint64" => Some(MOST_U64),
             "int32" => Some(i32::MAX.into()),
             _ => None,
         };
         Self {
-            single: format == "float",
+            single,
             least: bound("minimum"),
             most: bound("maximum").or(largest),
             above: bound("exclusiveMinimum"),
@@ -269,5 +274,14 @@ impl Numbers {
 }
 
 fn shown(bound: f64) -> String {
-    if bound.abs() >= 1.0e16 { format!("{bound:e}") } else { bound.to_string() }
+    let single = bound as f32;
+    let is_large = bound.abs() >= 1.0e16;
+    match f64::from(single) == bound {
+        _ if bound == MOST_U64 => u64::MAX.to_string(),
+        // The digits that a 32-bit number needs: 0.01, not 0.009999999776482582.
+        true if is_large => format!("{single:e}"),
+        true => single.to_string(),
+        false if is_large => format!("{bound:e}"),
+        false => bound.to_string(),
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::Walk;
 use super::names::Family;
-use super::rule::Rule;
+use super::rule::{MOST_U64, Rule};
 use crate::document::Node;
 use crate::path::Trail;
 use crate::report::Finding;
@@ -24,6 +24,8 @@ impl Walk<'_> {
         }
         // Limits are meant for the number that will be used: 1e-60 is 0 in 32 bits.
         let value = if rule.numbers.single { f64::from(written as f32) } else { written };
+        // Whole numbers up to 2^64 - 1 are kept exactly; as a double the largest of them would be 2^64.
+        let value = if whole && number.is_u64() { value.min(MOST_U64) } else { value };
         if !value.is_finite() {
             return self.wrong_number(node, at, "between -3.4e38 and 3.4e38", number);
         }
@@ -41,7 +43,7 @@ impl Walk<'_> {
             return self.wrong_number(node, at, &bound, number);
         }
         if whole && number.is_f64() {
-            return Some((value as i64).into());
+            return Some(if value < 0.0 { (value as i64).into() } else { (value as u64).into() });
         }
         Some(Value::Number(number.clone()))
     }

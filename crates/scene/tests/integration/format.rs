@@ -62,7 +62,7 @@ fn the_reference_holds_true() {
     let text = reference();
     let scenes = text.split("```").skip(1).step_by(2).filter(|block| block.contains("\"version\""));
     let scenes: Vec<&str> = scenes.filter_map(|block| Some(block.split_once('\n')?.1)).collect();
-    assert_eq!(scenes.len(), 3);
+    assert_eq!(scenes.len(), 4);
     for text in scenes {
         let scene = scene(text);
         assert!(scene.check().list().is_empty(), "{}", scene.check());
@@ -84,4 +84,38 @@ fn the_reference_holds_true() {
         assert!(!text.contains(name.as_str()), "the reference speaks Rust: {name}");
     }
     assert!(!text.contains("any value") && !text.contains("[`crate"));
+}
+
+/// Every numeric limit that the published schema states is allowed itself.
+#[test]
+fn limits_allow_their_own_values() {
+    let allowed = [
+        r#"{"version": 1, "render": {"seed": 18446744073709551615}}"#,
+        r#"{"version": 1, "render": {"integrator": {"path": {"clamp_direct": 1e-6, "clamp_indirect": 1e30}}}}"#,
+        r#"{"version": 1, "materials": {"a": {"phong": {"ior": 0.01}}}}"#,
+    ];
+    for text in allowed {
+        let scene = scene(text);
+        assert!(scene.check().list().is_empty(), "{text}: {}", scene.check());
+    }
+    assert_eq!(scene(allowed[0]).description.render.seed, u64::MAX);
+    let refused = [
+        (r#"{"version": 1, "render": {"seed": 18446744073709551616}}"#, "between 0 and 18446744073709551615"),
+        (r#"{"version": 1, "render": {"seed": -1}}"#, "between 0 and 18446744073709551615"),
+        (r#"{"version": 1, "render": {"integrator": {"path": {"clamp_direct": 9e-7}}}}"#, "between 0.000001 and 1e30"),
+    ];
+    for (text, message) in refused {
+        let error = Scene::from_json(text, "test.json").map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains(message), "{text}: {error}");
+    }
+}
+
+/// Editors read `$schema`; the program leaves it alone, in included files too.
+#[test]
+fn scenes_name_their_schema() {
+    let named = scene(r#"{"$schema": "./scene.schema.json", "version": 1, "objects": [{"shape": "sphere"}]}"#);
+    let plain = scene(r#"{"version": 1, "objects": [{"shape": "sphere"}]}"#);
+    assert_eq!(named.description, plain.description);
+    let error = Scene::from_json(r#"{"$schema": 7, "version": 1}"#, "test.json").map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("JSON Schema") && error.contains("found a number"), "{error}");
 }
