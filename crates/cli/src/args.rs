@@ -192,25 +192,29 @@ pub struct RenderArgs {
     pub max_memory: Option<u64>,
 }
 
-/// Flags whose value may be omitted, with the value that they then have and a test of values.
-const OPTIONAL_VALUES: [(&str, &str, fn(&str) -> bool); 2] = [
-    ("--denoise", "own", |word| value::denoiser(word).is_ok()),
-    ("--fireflies", "10", |word| word.parse::<u32>().is_ok()),
-];
+/// The value that a flag has where its own is omitted, and whether a word is such a value; `None`
+/// for flags whose value is never omitted.
+fn optional_value(flag: &str, word: &str) -> Option<(&'static str, bool)> {
+    match flag {
+        "--denoise" => Some(("own", value::denoiser(word).is_ok())),
+        "--fireflies" => Some(("10", word.parse::<u32>().is_ok())),
+        _ => None,
+    }
+}
 
 /// The words of a command line with omitted values filled in: `--denoise scene.json` denoises by
 /// default and leaves the scene to be read as the scene.
 pub fn with_optional_values(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    let mut words: Vec<OsString> = words.into_iter().collect();
+    let words: Vec<OsString> = words.into_iter().collect();
     let end = words.iter().position(|word| word == "--").unwrap_or(words.len());
-    for at in 0..end {
-        let flag = OPTIONAL_VALUES.iter().find(|(flag, ..)| words[at] == *flag);
-        let Some((flag, default, is_value)) = flag else { continue };
-        if !words.get(at + 1).and_then(|next| next.to_str()).is_some_and(is_value) {
-            words[at] = format!("{flag}={default}").into();
+    let filled = |(at, word): (usize, &OsString)| {
+        let next = words.get(at + 1).and_then(|next| next.to_str()).unwrap_or_default();
+        match word.to_str().filter(|_| at < end).and_then(|flag| Some((flag, optional_value(flag, next)?))) {
+            Some((flag, (default, false))) => format!("{flag}={default}").into(),
+            _ => word.clone(),
         }
-    }
-    words
+    };
+    words.iter().enumerate().map(filled).collect()
 }
 
 #[cfg(test)]
