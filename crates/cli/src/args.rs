@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::progress::Progress;
 use crate::value::{self, FrameRange, Shard};
-use clap::{Args as Arguments, Parser};
+use clap::{Args as Arguments, ColorChoice, CommandFactory, FromArgMatches, Parser};
 use juggler::Denoiser;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::tracer::film::Rect;
@@ -17,6 +17,18 @@ pub struct Args {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+}
+
+impl Args {
+    /// Reads a command line. A word after a flag whose value may be omitted is the value if it can
+    /// be, else the scene; where neither fits, the error is that of the value.
+    pub fn parse_words(words: Vec<OsString>, color: ColorChoice) -> Result<Self, clap::Error> {
+        let parse = |words: &[OsString]| {
+            let matches = Self::command().color(color).try_get_matches_from(words)?;
+            Self::from_arg_matches(&matches)
+        };
+        parse(&words).or_else(|error| parse(&with_optional_values(&words)).map_err(|_| error))
+    }
 }
 
 /// Flags that say what a picture is of and how it is sampled, for all that render.
@@ -204,8 +216,7 @@ fn optional_value(flag: &str, word: &str) -> Option<(&'static str, bool)> {
 
 /// The words of a command line with omitted values filled in: `--denoise scene.json` denoises by
 /// default and leaves the scene to be read as the scene.
-pub fn with_optional_values(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    let words: Vec<OsString> = words.into_iter().collect();
+fn with_optional_values(words: &[OsString]) -> Vec<OsString> {
     let end = words.iter().position(|word| word == "--").unwrap_or(words.len());
     let filled = |(at, word): (usize, &OsString)| {
         let next = words.get(at + 1).and_then(|next| next.to_str()).unwrap_or_default();
@@ -235,8 +246,8 @@ mod tests {
     use super::*;
 
     fn filled(line: &str) -> String {
-        let words = with_optional_values(line.split(' ').map(OsString::from));
-        words.into_iter().map(|word| word.into_string().unwrap()).collect::<Vec<_>>().join(" ")
+        let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+        with_optional_values(&words).into_iter().map(|word| word.into_string().unwrap()).collect::<Vec<_>>().join(" ")
     }
 
     #[test]

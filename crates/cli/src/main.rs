@@ -14,13 +14,11 @@ mod source;
 mod stats;
 mod value;
 
-use clap::{CommandFactory, FromArgMatches};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let mut parser = args::Args::command().color(console::color_choice());
-    let parsed = parser.try_get_matches_from_mut(args::with_optional_values(std::env::args_os()));
-    let args = match parsed.and_then(|matches| args::Args::from_arg_matches(&matches)) {
+    let words = std::env::args_os().collect();
+    let args = match args::Args::parse_words(words, console::color_choice()) {
         Ok(args) => args,
         Err(error) => {
             // Help and version go to standard output, mistakes to standard error; a closed pipe is no mistake.

@@ -244,7 +244,7 @@ fn what_a_film_cannot_be_is_said() {
         ("-o f.webp --frames 0..2 --size 2x16384", "1 to 16383"),
         ("-o f.mp4 --size 15x16", "16 to 65535"),
         ("-o f.mp4 --crop 0,0,8,8", "8 × 8"),
-        ("-o f.apng --frames 0..4000000000", "more than the limit"),
+        ("-o f.apng --frames 0..4000000000", "at most 1000000 are allowed"),
         ("-o f.mp4 --size 4000x4000 --max-memory 1G", "for the MP4 film"),
         ("-o f.png --shard 0/2", "--frames"),
         ("-o f.png --fps 10", "--fps is for moving pictures: .apng .gif .mp4 .webp"),

@@ -183,4 +183,7 @@ fn noise_is_taken_out_the_same_way_by_shards() {
     assert!(error("whole.pfm") < 0.8 * error("noisy.pfm"), "{} {}", error("whole.pfm"), error("noisy.pfm"));
     let message = folder.bad(&format!("render {BALL} --denoise owl"), 2);
     assert!(message.contains("own"), "{message}");
+    // A scene after the flag is the scene.
+    folder.good(&format!("render --denoise {BALL} -o after.png -q"));
+    assert!(bytes("whole.png") == bytes("after.png"));
 }
