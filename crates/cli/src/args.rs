@@ -22,12 +22,12 @@ pub struct Args {
 impl Args {
     /// Reads a command line. A word after a flag whose value may be omitted is the value if it can
     /// be, else the scene; where neither fits, the error is that of the value.
-    pub fn parse_words(words: Vec<OsString>, color: ColorChoice) -> Result<Self, clap::Error> {
+    pub fn parse_words(words: &[OsString], color: ColorChoice) -> Result<Self, clap::Error> {
         let parse = |words: &[OsString]| {
             let matches = Self::command().color(color).try_get_matches_from(words)?;
             Self::from_arg_matches(&matches)
         };
-        parse(&words).or_else(|error| parse(&with_optional_values(&words)).map_err(|_| error))
+        parse(words).or_else(|error| parse(&with_optional_values(words)).map_err(|_| error))
     }
 }
 

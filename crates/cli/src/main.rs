@@ -17,8 +17,8 @@ mod value;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let words = std::env::args_os().collect();
-    let args = match args::Args::parse_words(words, console::color_choice()) {
+    let words: Vec<_> = std::env::args_os().collect();
+    let args = match args::Args::parse_words(&words, console::color_choice()) {
         Ok(args) => args,
         Err(error) => {
             // Help and version go to standard output, mistakes to standard error; a closed pipe is no mistake.
