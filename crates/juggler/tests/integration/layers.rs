@@ -158,8 +158,8 @@ fn a_picture_whose_halves_are_apart_says_so() {
     assert_eq!(plain, oidn, "their samples are the same");
 }
 
-/// Every integrator fills every layer: those of what is seen as the path tracer does, and those of light and of its groups
-/// so that they add up to its picture.
+/// Every integrator fills every AOV: AOVs of the first hit are those of the path tracer, and AOVs of
+/// light paths and light groups add up to the integrator's picture.
 #[test]
 fn every_integrator_fills_all_layers() {
     let moving = SCENE

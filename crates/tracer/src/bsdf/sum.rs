@@ -248,7 +248,7 @@ impl Bsdf {
             value += part * (one.weight * dimming);
             density += match one.role.glass().and_then(|glass| shares.get(glass)) {
                 Some(share) => pdf * share,
-                // Some samples of glass become those of the lobe that returns light below.
+                // Some samples of the glass become samples of the lobe that returns light below.
                 None if wo.z < 0.0 && wi.z > 0.0 && self.returning(index).is_some() => pdf * share * dimming,
                 None => pdf * share,
             };

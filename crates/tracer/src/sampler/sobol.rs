@@ -34,8 +34,8 @@ fn shuffled(index: u32, seed: u32) -> u32 {
     permute(index.reverse_bits(), seed).reverse_bits()
 }
 
-/// Scrambled first dimension, bits reversed: the bits of Sobol's first dimension are those of the
-/// index reversed, and scrambling works on the reversed bits again, so the two reversals cancel.
+/// Scrambled first dimension, bits reversed. Sobol's first dimension is the bit-reversed index, and the
+/// scrambling works on reversed bits too, so both reversals cancel.
 #[inline]
 fn scrambled_first(index: u32, seed: u32) -> u32 {
     permute(index, seed ^ 0x9c8f_2d35)

@@ -15,10 +15,12 @@
 //!
 //! Between these roughnesses a solid has a share of both.
 //!
-//! Values keep energy on average over directions, but not for each. A ball holds light that it reflects totally for many bounces,
-//! each of which would gain or lose. So samples follow the light: a sample of the glass that goes up leaves with
-//! probability T, and otherwise becomes one that returns. Samples of white glass so carry a weight of 1, and the energy of a
-//! path is kept exactly from every direction; densities of returned light are those of its values.
+//! BSDF values keep energy on average over directions, but not for each direction. A solid sphere holds
+//! totally reflected light for many bounces, and each bounce would multiply the error. Samples therefore
+//! follow the light: a sample of the glass that goes up leaves with probability T, and otherwise becomes
+//! a sample of the returning lobe. Samples of white glass thus carry a weight of 1, so a path keeps its
+//! energy exactly from every direction. The density of a returned sample is the density that the BSDF
+//! values of the returning lobe imply.
 
 use super::{Bsdf, Weighted, mean};
 use crate::bsdf::energy::Scramble;
@@ -78,8 +80,8 @@ impl Bsdf {
         }
     }
 
-    /// Adds `weight` of what goes back below because layers over the glass that was pushed last, which transmits light in this
-    /// color, keep it from leaving.
+    /// Adds `weight` of a lobe that returns below the light that layers keep from leaving the glass. The
+    /// glass is the lobe that was pushed last, and transmits light in this color.
     pub fn push_return(&mut self, color: Rgb, weight: f32) {
         let Some((glass, layers)) = self.lobes.split_last().filter(|(_, layers)| has_cover(layers)) else { return };
         let place = layers.len();
@@ -249,7 +251,7 @@ impl Bsdf {
         match one.role {
             Role::Upright => one.lobe.sample(wo, u, choice),
             Role::Below => one.lobe.sample(turned(wo), u, choice).map(turned_back),
-            // Samples of the glass become those of this lobe.
+            // `sample_under_layers` turns samples of the glass into samples of this lobe.
             Role::ReturnedByPane { .. } | Role::Returned { .. } => None,
         }
     }

@@ -18,7 +18,7 @@ pub struct Seen<'a> {
     pub local: Vec3,
     pub time: f32,
     interior: Option<InteriorId>,
-    /// Specular spheres that the vertex sees, where the path samples lights by way of them.
+    /// Specular spheres visible from the vertex; `None` where the path samples no light through them.
     pub prospect: Option<&'a Prospect>,
 }
 
