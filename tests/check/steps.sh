@@ -107,6 +107,13 @@ step_features() {
 -p juggler-cli --no-default-features --features view
 -p juggler-web
 END
+  # The page itself needs a compiler that few machines have (step web), its list of packages does not.
+  heading "features: packages of the page in WebAssembly"
+  if cargo tree --locked -p juggler-web --target wasm32-unknown-unknown --edges normal --prefix none |
+    grep -E '^(libloading|notify|rav1e|rustix|signal-hook|tokio) '; then
+    echo "error: WebAssembly has no system that these packages could call" >&2
+    return 1
+  fi
 }
 
 # Hashes of pictures in every build that people make: they must be the same to the bit. Statistics

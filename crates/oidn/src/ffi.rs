@@ -2,8 +2,9 @@
 #![allow(unsafe_code, reason = "a foreign library")]
 
 use crate::Error;
-use libloading::Library;
-use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
+use crate::image::Image;
+pub(crate) use libloading::Library;
+use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::path::Path;
 use std::ptr::{NonNull, null};
 
@@ -176,22 +177,5 @@ impl Drop for Filter<'_> {
     fn drop(&mut self) {
         // SAFETY: the filter was made by this library and is released once.
         unsafe { (self.device.api.release_filter)(self.handle.as_ptr()) }
-    }
-}
-
-/// A picture as the library reads it.
-pub(crate) struct Image {
-    name: CString,
-    width: usize,
-    height: usize,
-    numbers: Vec<f32>,
-}
-
-impl Image {
-    /// `None` unless there are three numbers for each of `width × height` pixels, and any.
-    pub fn new(name: &str, width: usize, height: usize, numbers: Vec<f32>) -> Option<Self> {
-        let wanted = width.checked_mul(height)?.checked_mul(3)?;
-        let name = CString::new(name).ok()?;
-        (wanted > 0 && numbers.len() == wanted).then_some(Self { name, width, height, numbers })
     }
 }

@@ -4,9 +4,11 @@
 //!
 //! Whoever names a library lets its code run: a path must come from the user, not from a file that somebody sent.
 
+#[cfg_attr(target_family = "wasm", path = "absent.rs")]
 mod ffi;
+mod image;
 
-use ffi::Image;
+use image::Image;
 use juggler_math::{Rgb, Vec3};
 use std::path::{Path, PathBuf};
 
@@ -78,7 +80,7 @@ impl Library {
         Err(Error::NotFound { tried })
     }
 
-    fn checked(path: &Path, library: libloading::Library) -> Result<Self, Error> {
+    fn checked(path: &Path, library: ffi::Library) -> Result<Self, Error> {
         let unfit = |reason: String| Error::Unfit { path: path.to_path_buf(), reason };
         let api = ffi::Api::new(library).map_err(unfit)?;
         let number = api.device().map_err(|error| unfit(error.to_string()))?.version();
