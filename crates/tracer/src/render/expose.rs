@@ -186,3 +186,15 @@ impl<'j> Pixel<'j> {
         queue.paths.extend((0..).zip(&weights).take(places.len()).map(path));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{FILM, LENS, TIME};
+
+    /// Film, lens, the first dimension of a path, time.
+    #[test]
+    fn dimensions_of_a_camera_ray_are_distinct() {
+        let dimensions = [0, FILM, FILM + LENS, TIME];
+        assert!(dimensions.is_sorted_by(|a, b| a < b), "{dimensions:?}");
+    }
+}

@@ -306,3 +306,6 @@ impl World {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

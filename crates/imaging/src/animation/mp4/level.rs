@@ -44,4 +44,33 @@ mod tests {
         assert_eq!(least(320, 200, 30.0), Some(0));
         assert_eq!(least(20_000, 20_000, 1.0), None);
     }
+
+    /// Each row follows from the frame and frame rate that the specification gives as an example of
+    /// its level (table in A.3): the area is that frame's, both sides may be a number of times as
+    /// long, and the rate is that of those frames.
+    #[test]
+    fn rows_follow_from_the_frames_of_the_specification() {
+        // Level, width, height, frames a second, how many times as long a side may be.
+        let examples: [(u8, u32, u32, u32, u32); 14] = [
+            (0, 512, 288, 30, 4),
+            (1, 704, 396, 30, 4),
+            (4, 1088, 612, 30, 4),
+            (5, 1376, 774, 30, 4),
+            (8, 2048, 1152, 30, 3),
+            (9, 2048, 1152, 60, 3),
+            (12, 4096, 2176, 30, 2),
+            (13, 4096, 2176, 60, 2),
+            (14, 4096, 2176, 120, 2),
+            (15, 4096, 2176, 120, 2),
+            (16, 8192, 4352, 30, 2),
+            (17, 8192, 4352, 60, 2),
+            (18, 8192, 4352, 120, 2),
+            (19, 8192, 4352, 120, 2),
+        ];
+        let rows = examples.map(|(level, width, height, rate, times)| {
+            let area = u64::from(width) * u64::from(height);
+            (level, area, times * width, times * height, area * u64::from(rate))
+        });
+        assert_eq!(rows, LEVELS);
+    }
 }

@@ -3,7 +3,7 @@
 
 use super::super::{Chain, Emit, PathState, Stage};
 use super::surface::Seen;
-use super::{Path, Sampling, dimension};
+use super::{Dimension, Path, Sampling};
 use crate::bsdf::{BsdfSample, Scatter};
 use crate::manifold::{Bend, End, Way, bends, spread};
 use crate::medium::Interiors;
@@ -73,10 +73,10 @@ impl Path {
     /// Asks one light by way of one ball.
     pub fn ask_by_ball(&self, seen: &Seen, world: &World, path: &PathState, emit: &mut Emit) {
         let Some(prospect) = seen.prospect else { return };
-        let picked = prospect.pick(path.sampler.at(dimension::CASTER).next_1d());
+        let picked = prospect.pick(path.sampler.at(Dimension::Caster as u32).next_1d());
         let Some((id, chance)) = picked else { return };
         let Some((caster, way)) = world.caster(id).filter(|(_, way)| self.allows(*way, path)) else { return };
-        let u = path.sampler.at(dimension::CASTER_LIGHT).next_2d();
+        let u = path.sampler.at(Dimension::CasterLight as u32).next_2d();
         let Some(light) = world.sample_light(&from_center(caster, seen.time), u) else { return };
         let place = caster.ball.center + light.wi * light.distance;
         let to = if light.distance < f32::INFINITY { caster.ball.end(place) } else { Some(End::infinity(light.wi)) };

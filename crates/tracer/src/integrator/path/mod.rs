@@ -22,24 +22,26 @@ mod sampling;
 mod surface;
 mod volume;
 
-/// Numbers of a vertex, in order.
-mod dimension {
-    /// Which of several materials, and whether there is a hole.
-    pub const CHOICE: u32 = 0;
-    /// A light, and a place on it.
-    pub const LIGHT: u32 = 1;
-    /// The direction in which to go on.
-    pub const SCATTER: u32 = 2;
-    /// Whether to go on.
-    pub const ROULETTE: u32 = 3;
-    /// How far through a medium.
-    pub const FLIGHT: u32 = 4;
-    /// Whether a microfacet of rough glass mirrors or refracts.
-    pub const FACET: u32 = 5;
-    /// By way of which ball light may come.
-    pub const CASTER: u32 = 6;
-    /// A light that the ball sees, and a place on it.
-    pub const CASTER_LIGHT: u32 = 7;
+/// Sampler dimensions of a path vertex. Each value belongs to one decision: two variants of an enum
+/// cannot share a value.
+#[derive(Clone, Copy, Debug)]
+enum Dimension {
+    /// Choice among several materials, and whether the surface is transparent at this point.
+    Choice = 0,
+    /// Choice of a light and of a point on it.
+    Light = 1,
+    /// Direction of the next path segment.
+    Scatter = 2,
+    /// Russian roulette.
+    Roulette = 3,
+    /// Distance to the next scattering event in a medium.
+    Flight = 4,
+    /// Whether a microfacet of rough glass reflects or refracts.
+    Facet = 5,
+    /// Choice of a specular sphere for light sampling.
+    Caster = 6,
+    /// Choice of a light, and of a point on it, as seen from the specular sphere.
+    CasterLight = 7,
 }
 
 /// Lights that are asked at the first vertex where there are several.
@@ -120,7 +122,7 @@ impl Path {
         }
         // Filters may weight samples by less than nothing.
         let chance = throughput.map(f32::abs).max_channel().min(1.0);
-        (path.sampler.at(dimension::ROULETTE).next_1d() < chance).then_some(chance)
+        (path.sampler.at(Dimension::Roulette as u32).next_1d() < chance).then_some(chance)
     }
 }
 
@@ -140,7 +142,7 @@ impl Integrator for Path {
             return surface::pass(world, ray, path, vertex, emit);
         }
         let around = surface::around(world, path, interior);
-        let choice = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(dimension::CHOICE).next_2d() };
+        let choice = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(Dimension::Choice as u32).next_2d() };
         let mut shade = Shade::black();
         world.fill_shade(vertex, -ray.direction, around, choice.x, &mut shade);
         if shade.opacity < 1.0 && choice.y >= shade.opacity {

@@ -1,7 +1,7 @@
 //! Paths at surfaces: what a light brings, and where to go on.
 
 use super::super::{Chain, Counts, Emit, PathState, Trail};
-use super::{Path, Sampling, dimension};
+use super::{Dimension, Path, Sampling};
 use crate::bsdf::{Bsdf, BsdfSample, Scatter};
 use crate::material::Shade;
 use crate::medium::{InteriorId, Interiors};
@@ -111,9 +111,9 @@ impl<'a> Seen<'a> {
 
     /// A direction in which a path may go on.
     fn sample(&self, path: &PathState) -> Option<(Vec3, BsdfSample)> {
-        let mut u = path.sampler.at(dimension::SCATTER).next_2d();
+        let mut u = path.sampler.at(Dimension::Scatter as u32).next_2d();
         let (frame, bsdf) = (&self.shade.frame, &self.shade.bsdf);
-        let choice = if bsdf.has_choice() { path.sampler.at(dimension::FACET).next_1d() } else { 0.0 };
+        let choice = if bsdf.has_choice() { path.sampler.at(Dimension::Facet as u32).next_1d() } else { 0.0 };
         let Some(prospect) = self.prospect else {
             let sample = bsdf.sample(self.local, u, choice)?;
             return Some((frame.to_world(sample.wi), sample));
@@ -142,7 +142,7 @@ impl<'a> Seen<'a> {
     /// What some lights bring.
     pub fn ask_lights(&self, count: u16, sampling: Sampling, world: &World, path: &PathState, emit: &mut Emit) {
         let to = self.receiver();
-        let sampler = path.sampler.at(dimension::LIGHT);
+        let sampler = path.sampler.at(Dimension::Light as u32);
         for part in 0..u32::from(count) {
             let u = sampler.part(part, u32::from(count)).next_2d();
             if let Some(light) = world.sample_light(&to, u) {

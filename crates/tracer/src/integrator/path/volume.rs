@@ -1,7 +1,7 @@
 //! Paths in media: how far they come, what lights bring to where they are scattered.
 
 use super::super::{Chain, Emit, PathState, Trail};
-use super::{Path, dimension};
+use super::{Dimension, Path};
 use crate::medium::HenyeyGreenstein;
 use crate::world::{Receiver, World};
 use juggler_math::{Ray, Rgb};
@@ -17,7 +17,7 @@ impl Path {
         if medium.is_clear() {
             return false;
         }
-        let u = path.sampler.at(dimension::FLIGHT).next_2d();
+        let u = path.sampler.at(Dimension::Flight as u32).next_2d();
         let flight = medium.sample(distance, emit.weight(), u.x, u.y);
         emit.scale(flight.weight);
         let Some(t) = flight.scattered_at else { return false };
@@ -33,14 +33,14 @@ impl Path {
     fn scatter(&self, world: &World, ray: &Ray, path: &PathState, phase: HenyeyGreenstein, emit: &mut Emit) {
         let from = |direction| Ray { time: ray.time, ..Ray::new(ray.origin, direction) };
         let to = Receiver { point: ray.origin, error: 0.0, normal: juggler_math::Vec3::ZERO, time: ray.time };
-        if let Some(light) = world.sample_light(&to, path.sampler.at(dimension::LIGHT).next_2d()) {
+        if let Some(light) = world.sample_light(&to, path.sampler.at(Dimension::Light as u32).next_2d()) {
             let scattered = phase.eval(ray.direction.dot(light.wi));
             let share = if light.can_be_met { self.sampling.light_weight(light.pdf, scattered) } else { 1.0 };
             let shadow = from(light.wi).up_to(light.distance * SHORT_OF);
             let (radiance, group) = (light.radiance * (scattered * share / light.pdf), world.light_group(light.origin));
             emit.if_visible_inside(shadow, radiance, group, path.trail.inside);
         }
-        let wi = phase.sample(ray.direction, path.sampler.at(dimension::SCATTER).next_2d());
+        let wi = phase.sample(ray.direction, path.sampler.at(Dimension::Scatter as u32).next_2d());
         let mut scattered = path.trail.scattered;
         scattered.volume = scattered.volume.saturating_add(1);
         let pdf = phase.eval(ray.direction.dot(wi));
