@@ -1,4 +1,5 @@
-//! Lesson 2: a scene as JSON, seen by another camera than its own, into `from_above.png`.
+//! Lesson 2: a scene as JSON, seen by its own camera into `lesson.png` and by another one into
+//! `from_above.png`. The world and its acceleration structures are built once.
 //!
 //! `cargo run --release --example 2_change_the_camera`
 
@@ -15,9 +16,11 @@ const SCENE: &str = r#"{
 
 fn main() -> Result<(), Error> {
     // A file is read by Scene::load("name.json").
-    let mut scene = Scene::from_json(SCENE, "lesson.json")?;
+    let scene = Scene::from_json(SCENE, "lesson.json")?;
+    let picture = Picture::new(&scene, &Settings::default())?;
+    picture.image(&Control::default())?.save("lesson.png")?;
     let above = Perspective { eye: vec3(0.0, 8.0, 2.0), look_at: vec3(0.0, 0.0, 0.0).into(), ..Default::default() };
-    scene.description.camera = Some(above.into());
-    juggler::render_to_file(&scene, &Settings::default(), "from_above.png")?;
+    let from_above = picture.seen(View { camera: above.into(), ..picture.view() })?;
+    from_above.image(&Control::default())?.save("from_above.png")?;
     Ok(())
 }

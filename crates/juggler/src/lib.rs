@@ -17,7 +17,9 @@
 //! - [`Settings`] say what is wanted beyond what the scene says,
 //! - [`render()`] makes an image in memory, [`render_to_file`] a file of any size,
 //! - [`layers`] are what can be asked for beside the picture,
-//! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards.
+//! - [`ImageExt`] saves an image in memory, and turns it into bytes,
+//! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards; and it keeps
+//!   the world with its acceleration structures for further pictures.
 //!
 //! Rendering uses the current rayon thread pool. The crates behind: [`math`], [`tracer`], [`scene`],
 //! [`imaging`], [`film`]. The folder `examples/` is a course in four steps.
@@ -26,6 +28,7 @@ pub mod denoise;
 mod error;
 pub mod estimate;
 mod frames;
+mod image;
 mod kinds;
 pub mod layers;
 pub mod memory;
@@ -38,6 +41,7 @@ mod viewpoint;
 
 pub use denoise::Denoiser;
 pub use error::Error;
+pub use image::ImageExt;
 pub use juggler_film as film;
 pub use juggler_imaging as imaging;
 pub use juggler_math as math;

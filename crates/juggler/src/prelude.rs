@@ -2,8 +2,8 @@
 //!
 //! Textures and backgrounds stay behind their modules' names: `texture::Gradient`, `background::Gradient`.
 
-pub use crate::{Error, Picture, Settings};
-pub use juggler_imaging::{Format, Tone};
+pub use crate::{Error, ImageExt, Picture, Settings, View};
+pub use juggler_imaging::{AnyCurve, Format, Tone};
 pub use juggler_math::{Image, Rgb, Vec2, Vec3, vec2, vec3};
 pub use juggler_scene::{Object, Scene};
 pub use juggler_tracer::camera::*;

@@ -40,4 +40,48 @@ impl Image {
     pub fn pixels_mut(&mut self) -> &mut [Rgb] {
         &mut self.pixels
     }
+
+    /// The pixel in column `x`, counted from the left, of row `y`, counted from the top; `None`
+    /// outside of the image.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<Rgb> {
+        if x < self.width { self.row(y)?.get(x as usize).copied() } else { None }
+    }
+
+    /// The pixels of row `y`, counted from the top; `None` below the last row.
+    pub fn row(&self, y: u32) -> Option<&[Rgb]> {
+        if y >= self.height {
+            return None;
+        }
+        let width = self.width as usize;
+        let start = y as usize * width;
+        self.pixels.get(start..start + width)
+    }
+
+    /// Linear red, green and blue of all pixels, row by row: an array of the shape
+    /// (height, width, 3).
+    pub fn to_floats(&self) -> Vec<f32> {
+        self.pixels.iter().flat_map(|pixel| pixel.to_array()).collect()
+    }
+
+    /// The pixels, row by row.
+    pub fn into_pixels(self) -> Vec<Rgb> {
+        self.pixels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_are_counted_from_the_top_left() {
+        let pixels: Vec<Rgb> = (0..6).map(|i| Rgb::splat(i as f32)).collect();
+        let image = Image::from_pixels(3, 2, pixels.clone()).unwrap();
+        assert_eq!(image.pixel(2, 1), Some(Rgb::splat(5.0)));
+        assert_eq!(image.pixel(0, 1), Some(Rgb::splat(3.0)));
+        assert_eq!((image.pixel(3, 0), image.pixel(0, 2)), (None, None));
+        assert_eq!((image.row(1), image.row(2)), (Some(&pixels[3..]), None));
+        assert_eq!(image.to_floats()[3..7], [1.0, 1.0, 1.0, 2.0]);
+        assert_eq!(image.into_pixels(), pixels);
+    }
 }

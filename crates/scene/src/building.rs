@@ -2,9 +2,14 @@
 
 use crate::Scene;
 use crate::description::{Backdrop, Object};
+use juggler_imaging::Tone;
+use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::film::AnyFilter;
+use juggler_tracer::integrator::AnyIntegrator;
 use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
+use juggler_tracer::sampler::AnySampler;
 use juggler_tracer::texture::AnyTexture;
 
 /// Building a scene.
@@ -52,10 +57,46 @@ impl Scene {
         self
     }
 
-    /// Sets what lies behind everything.
+    /// Sets the background: a color, or any kind of background such as
+    /// [`Sky`](juggler_tracer::background::Sky).
     #[must_use]
-    pub fn background(mut self, background: impl Into<Backdrop>) -> Self {
-        self.description.background = Some(background.into());
+    pub fn background(mut self, background: impl Into<AnyBackground>) -> Self {
+        self.description.background = Some(Backdrop::from(background.into()));
+        self
+    }
+
+    /// Sets how light is followed.
+    #[must_use]
+    pub fn integrator(mut self, integrator: impl Into<AnyIntegrator>) -> Self {
+        self.description.render.integrator = integrator.into();
+        self
+    }
+
+    /// Sets how the samples of a pixel are spread.
+    #[must_use]
+    pub fn sampler(mut self, sampler: impl Into<AnySampler>) -> Self {
+        self.description.render.sampler = sampler.into();
+        self
+    }
+
+    /// Sets the filter that turns samples into pixels.
+    #[must_use]
+    pub fn filter(mut self, filter: impl Into<AnyFilter>) -> Self {
+        self.description.render.filter = filter.into();
+        self
+    }
+
+    /// Sets the seed of all random choices: another seed gives another noise.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.description.render.seed = seed;
+        self
+    }
+
+    /// Sets the curve, the exposure and all else that turns linear light into the levels of a file.
+    #[must_use]
+    pub fn tone(mut self, tone: Tone) -> Self {
+        self.description.tone = tone;
         self
     }
 

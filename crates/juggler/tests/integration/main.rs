@@ -9,6 +9,7 @@
     reason = "a test fails by panicking and prints its figures"
 )]
 
+mod building;
 mod cryptomatte;
 mod gallery;
 mod layers;

@@ -158,6 +158,9 @@ impl From<Rgb> for Backdrop {
 
 impl From<AnyBackground> for Backdrop {
     fn from(kind: AnyBackground) -> Self {
-        Self::Kind(kind)
+        match kind {
+            AnyBackground::Solid(Solid { color }) => Self::Color(color),
+            kind => Self::Kind(kind),
+        }
     }
 }

@@ -84,6 +84,13 @@ closed_set! {
     }
 }
 
+impl From<Rgb> for AnyBackground {
+    /// The same radiance in every direction.
+    fn from(color: Rgb) -> Self {
+        Solid { color }.into()
+    }
+}
+
 impl AnyBackground {
     /// The name in the scene file.
     pub fn name(&self) -> &'static str {

@@ -211,9 +211,9 @@ fn coincident_balls_bring_light_once() {
 fn a_disk_right_below_a_sphere_blocks_its_caustic() {
     let floor = looking(Vec3::new(3.0, 0.3, 0.0), Vec3::ZERO);
     let scene = || {
-        Scene::floor().with(&ball(0.5), Vec3::Y * 0.75, GLASS).lit(
-            r#"{"point": {"position": [0.1, 8, 0], "color": 1, "intensity": 30}}"#,
-        )
+        Scene::floor()
+            .with(&ball(0.5), Vec3::Y * 0.75, GLASS)
+            .lit(r#"{"point": {"position": [0.1, 8, 0], "color": 1, "intensity": 30}}"#)
     };
     let seen = |scene: Scene| measure(&scene.world(), &floor, &*path(r#""max_depth": 8"#), 64).mean;
     assert!(seen(scene()) > 0.1, "there is no caustic to block");

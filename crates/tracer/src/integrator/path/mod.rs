@@ -142,7 +142,8 @@ impl Integrator for Path {
             return surface::pass(world, ray, path, vertex, emit);
         }
         let around = surface::around(world, path, interior);
-        let choice = if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(Dimension::Choice as u32).next_2d() };
+        let choice =
+            if world.is_simple(vertex) { Vec2::ZERO } else { path.sampler.at(Dimension::Choice as u32).next_2d() };
         let mut shade = Shade::black();
         world.fill_shade(vertex, -ray.direction, around, choice.x, &mut shade);
         if shade.opacity < 1.0 && choice.y >= shade.opacity {

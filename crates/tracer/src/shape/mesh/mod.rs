@@ -76,6 +76,33 @@ impl From<MeshData> for Mesh {
 }
 
 impl Mesh {
+    /// A mesh of triangles, which are index triples into `positions` (object space, scene units);
+    /// the front is where the corners run counter-clockwise. [`Shape::prepare`] checks the arrays.
+    ///
+    /// ```
+    /// use juggler_tracer::shape::Mesh;
+    /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = Mesh::from_triangles(positions.map(Into::into), [[0, 1, 2]]).with_uvs([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into));
+    /// assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (1, 3));
+    /// ```
+    pub fn from_triangles(positions: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
+        Self { positions: positions.into(), triangles: triangles.into(), ..Self::default() }
+    }
+
+    /// Sets the shading normals: one per position, object space, of any length.
+    #[must_use]
+    pub fn with_normals(mut self, normals: impl Into<Vec<Vec3>>) -> Self {
+        self.normals = normals.into();
+        self
+    }
+
+    /// Sets the surface coordinates: one per position.
+    #[must_use]
+    pub fn with_uvs(mut self, uvs: impl Into<Vec<Vec2>>) -> Self {
+        self.uvs = uvs.into();
+        self
+    }
+
     /// A mesh whose arrays are in a file, to be given to [`Mesh::load`] before [`Shape::prepare`].
     pub fn from_file(file: impl Into<String>) -> Self {
         Self { file: Some(file.into()), ..Self::default() }

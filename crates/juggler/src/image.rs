@@ -1,0 +1,85 @@
+//! Images in memory, written to files and turned into bytes.
+
+use crate::Error;
+use juggler_imaging::tone::Quantizer;
+use juggler_imaging::{Format, Header, Tone};
+use juggler_math::Image;
+use std::path::Path;
+
+/// What programs do with a finished [`Image`].
+///
+/// ```
+/// use juggler::prelude::*;
+///
+/// let scene = Scene::new().size(8, 4).samples(1).add(Object::new(Sphere::default()));
+/// let image = juggler::render(&scene, &Settings::default())?;
+/// let path = std::env::temp_dir().join("juggler-image-in-memory.png");
+/// image.save(&path)?;
+/// assert_eq!(image.to_rgb8(&Tone::default()).len(), 8 * 4 * 3);
+/// assert_eq!(image.to_floats().len(), 8 * 4 * 3);
+/// # std::fs::remove_file(path).unwrap();
+/// # Ok::<(), juggler::Error>(())
+/// ```
+pub trait ImageExt {
+    /// Writes the image to a file; its ending (`png`, `jpg`, `exr`, `hdr`, `webp`, `pfm`) selects
+    /// the format, and formats with levels get sRGB. An existing file is replaced when the new one
+    /// is complete. Errors: an unknown ending, a size that the format cannot hold, and files that
+    /// cannot be written.
+    fn save(&self, path: impl AsRef<Path>) -> Result<(), Error>;
+
+    /// [`ImageExt::save`] with a tone curve, exposure and the like. Formats of linear light (EXR,
+    /// HDR, PFM) ignore all of it but the primaries of an EXR.
+    fn save_with_tone(&self, path: impl AsRef<Path>, tone: &Tone) -> Result<(), Error>;
+
+    /// Levels from 0 to 255 of red, green and blue of all pixels, row by row, not dithered: an
+    /// array of the shape (height, width, 3).
+    fn to_rgb8(&self, tone: &Tone) -> Vec<u8>;
+}
+
+impl ImageExt for Image {
+    fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.save_with_tone(path, &Tone::default())
+    }
+
+    fn save_with_tone(&self, path: impl AsRef<Path>, tone: &Tone) -> Result<(), Error> {
+        let path = path.as_ref();
+        let format = Format::from_path(path)?;
+        let header = Header { tone: tone.clone(), ..Header::new(self.width(), self.height()) };
+        let writer = juggler_imaging::create(path, format, &header)?;
+        Ok(juggler_imaging::write_image(writer, self)?)
+    }
+
+    fn to_rgb8(&self, tone: &Tone) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        Quantizer::new(tone, 255).append_bytes(self.pixels(), &mut bytes);
+        bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::Rgb;
+
+    #[test]
+    fn levels_are_those_of_srgb() {
+        let pixels = [0.0, 0.215_861, 1.0, 4.0].map(Rgb::splat).to_vec();
+        let image = Image::from_pixels(2, 2, pixels).unwrap();
+        let levels = [0, 128, 255, 255].map(|level| [level; 3]);
+        assert_eq!(image.to_rgb8(&Tone::default()), levels.as_flattened());
+        let darker = Tone { exposure_stops: -2.0, ..Tone::default() };
+        assert_eq!(image.to_rgb8(&darker)[9..], [255; 3]);
+    }
+
+    #[test]
+    fn a_file_of_linear_light_holds_the_same_image() {
+        let folder = tempfile::tempdir().unwrap();
+        let pixels = [0.25, 1.5, 1e-3].map(|v| Rgb::new(v, 0.0, 1.0)).to_vec();
+        let image = Image::from_pixels(3, 1, pixels).unwrap();
+        let path = folder.path().join("image.pfm");
+        image.save(&path).unwrap();
+        assert_eq!(juggler_imaging::read(&path).unwrap(), image);
+        let unknown = image.save(folder.path().join("image.docx")).unwrap_err().to_string();
+        assert!(unknown.contains("image.docx"), "{unknown}");
+    }
+}
