@@ -81,6 +81,11 @@ impl Shade {
         }
     }
 
+    /// Says that a map has turned the frame's normal away from that of the true surface: see [`Bsdf::lean_from`].
+    pub(super) fn lean_from(&mut self, normal: Vec3) {
+        self.bsdf.lean_from(self.frame.to_local(normal));
+    }
+
     /// The share of light from everywhere that comes back towards `wo`, a unit vector of the world: its colour without light.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         self.bsdf.albedo(self.frame.to_local(wo))
