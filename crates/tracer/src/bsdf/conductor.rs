@@ -5,10 +5,11 @@
 //! perfect mirror white at any roughness. Its colour m counts the absorption of every further bounce:
 //! F² Ē / (1 - F (1 - Ē)) / (π (1 - Ē)) with F Fresnel's mean and Ē that of E.
 //!
-//! Sampling then follows the light, as that of a rough [`Dielectric`](super::Dielectric) does: the direction that a visible
-//! normal reflects is taken with probability G2 / G1; otherwise, that is with the very probability 1 - E(μo), one is drawn
-//! in proportion to (1 - E(μi)) μi. Samples of a perfect mirror carry a weight of 1, whatever the tables of E miss: light
-//! that meets metal many times, as inside of a solid that is part metal and part glass, neither gains nor loses energy.
+//! Sampling then follows the light, as that of a rough [`Dielectric`](super::Dielectric) does: the
+//! direction that a visible normal reflects is taken with probability G2 / G1; otherwise, that is
+//! with the very probability 1 - E(μo), one is drawn in proportion to (1 - E(μi)) μi. Samples of a
+//! perfect mirror carry a weight of 1, whatever the tables of E miss: light that meets metal many
+//! times, as inside of a solid that is part metal and part glass, neither gains nor loses energy.
 
 use super::energy::{self, Scramble};
 use super::ggx::Ggx;
@@ -93,7 +94,8 @@ impl Conductor {
         self.with_multiple(wo, wi, single, facing.value)
     }
 
-    /// Adds the lobe of what is scattered more than once to the value and the density of what is scattered once.
+    /// Adds the lobe of what is scattered more than once to the value and the density of what is
+    /// scattered once.
     fn with_multiple(&self, wo: Vec3, wi: Vec3, single: Rgb, density: f32) -> (Rgb, f32) {
         let more = self.lost(wo) * self.lost(wi) * wi.z;
         (single + self.multiple * more, density + self.normalization * more)

@@ -6,8 +6,9 @@
 //! T(μo) T(μi) / √(A(μo) A(μi)), where A goes from T to T̄ by how much the lobe spreads light: the same as for a mirror and for
 //! a matt lobe at either end. All are the same both ways, where glTF's dimming by T(μo) alone is not.
 //!
-//! What layers keep from leaving a surface that light also meets from below goes back there: see [`below`]. What a shading
-//! normal that leans would send below the true surface goes on above it: see [`horizon`].
+//! What layers keep from leaving a surface that light also meets from below goes back there: see
+//! [`below`]. Light that a turned shading normal would send below the geometric surface is spread
+//! above it: see [`horizon`].
 
 mod below;
 mod horizon;
@@ -28,7 +29,7 @@ pub const MAX_DELTAS: usize = 2 * MAX_LOBES;
 #[derive(Clone, Debug, Default)]
 pub struct Bsdf {
     lobes: ArrayVec<Weighted, MAX_LOBES>,
-    /// The true surface, where z leans from its normal.
+    /// The geometric surface, where a map has turned the shading normal away from its normal.
     horizon: Option<Horizon>,
 }
 

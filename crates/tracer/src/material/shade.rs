@@ -81,9 +81,10 @@ impl Shade {
         }
     }
 
-    /// Says that a map has turned the frame's normal away from that of the true surface: see [`Bsdf::lean_from`].
-    pub(super) fn lean_from(&mut self, normal: Vec3) {
-        self.bsdf.lean_from(self.frame.to_local(normal));
+    /// Sets the geometric normal, in world space, of a surface whose shading normal a map has
+    /// turned; the frame is known by then. See [`Bsdf::set_geometric_normal`].
+    pub(super) fn set_geometric_normal(&mut self, normal: Vec3) {
+        self.bsdf.set_geometric_normal(self.frame.to_local(normal));
     }
 
     /// The share of light from everywhere that comes back towards `wo`, a unit vector of the world: its colour without light.

@@ -208,7 +208,7 @@ impl MaterialTable {
         physical.add_lobes(&self.textures, view, &mut shade.bsdf);
         shade.transmissive = physical.is_transmissive();
         if is_mapped {
-            shade.lean_from(view.surface.normal);
+            shade.set_geometric_normal(view.surface.normal);
         }
     }
 
@@ -219,7 +219,7 @@ impl MaterialTable {
         lobe.add_lobes(view.is_outside(), &mut shade.bsdf);
         shade.lamp_scale = lobe.lamp_scale();
         if view.normal != view.surface.shading_normal {
-            shade.lean_from(view.surface.normal);
+            shade.set_geometric_normal(view.surface.normal);
         }
     }
 

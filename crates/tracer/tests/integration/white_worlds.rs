@@ -134,8 +134,8 @@ fn glass_under_a_map_of_normals_vanishes() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Patchworks and layers of `principled` keep 99 %, also of dense glass and metal from within, where light meets the metal some
-/// thirty times before it leaves.
+/// Patchworks and layers of `principled` keep 99 %, also of dense glass and metal from within,
+/// where light meets the metal some thirty times before it leaves.
 #[test]
 fn principled_glass_and_what_lies_over_it_vanishes() {
     let outside = [

@@ -1,10 +1,10 @@
-//! Lobes whose z leans away from the normal of the true surface.
+//! Lobes whose frame leans away from the geometric normal.
 
 use super::*;
 use crate::bsdf::{Conductor, Dielectric, DiffuseTransmission, Fresnel, Lambert, Plastic, Principled, ThinDielectric};
 use juggler_math::testing::close;
 
-/// Angles between z and the normal of the true surface, in radians.
+/// Angles between z and the geometric normal, in radians.
 const LEANS: [f32; 5] = [0.02, 0.2, 0.5, 1.0, 1.5];
 
 /// Surfaces that absorb nothing, and whether light comes through; their names.
@@ -26,20 +26,22 @@ fn white() -> Vec<(&'static str, Bsdf, bool)> {
     ]
 }
 
-/// The normal of a true surface from which z leans by an angle, towards the azimuth `turn`.
+/// The geometric normal from which z leans by an angle in radians, towards the azimuth `turn`, in
+/// turns.
 fn normal(angle: f32, turn: f32) -> Vec3 {
     let ((sin, cos), (y, x)) = (fun::sin_cos(angle), fun::sin_cos_turns(turn));
     Vec3::new(-x * sin, -y * sin, cos)
 }
 
-/// Leaning surfaces with the normal of the true one, and views that z and it have on the same side.
+/// Names, lobes without and with a geometric normal, that normal, and views that z and it have on
+/// the same side.
 fn leaning() -> Vec<(String, Bsdf, Bsdf, Vec3, Vec3)> {
     let mut all = Vec::new();
     for (number, (name, upright, is_open)) in white().into_iter().enumerate() {
         for (angle, views) in LEANS.into_iter().zip(std::iter::repeat(views(is_open))) {
             let normal = normal(angle, 0.15 * number as f32);
             let mut bsdf = upright.clone();
-            bsdf.lean_from(normal);
+            bsdf.set_geometric_normal(normal);
             let seen = views.into_iter().filter(|wo| wo.z * wo.dot(normal) > 0.0);
             all.extend(
                 seen.map(|wo| (format!("{name}, {angle} from {wo}"), upright.clone(), bsdf.clone(), normal, wo)),
@@ -53,7 +55,8 @@ fn leaning() -> Vec<(String, Bsdf, Bsdf, Vec3, Vec3)> {
 fn what_leans_gives_back_as_much_as_what_does_not() {
     for (name, upright, bsdf, _, wo) in leaning() {
         let (expected, energy) = (furnace(&upright, wo, 32), furnace(&bsdf, wo, 32));
-        // Samples of a single white lobe weigh 1, wherever they go; those of sums and panes do so on average.
+        // Samples of a single white lobe weigh 1, wherever they go; those of sums and panes do so
+        // on average.
         let near = if ["plastic", "pane", "half glass"].iter().any(|kind| name.contains(kind)) { 0.015 } else { 1e-3 };
         assert!(close(energy.g, expected.g, near), "{name}: {energy:?}, upright {expected:?}");
         assert_eq!(bsdf.albedo(wo), upright.albedo(wo), "{name}");
@@ -66,7 +69,7 @@ fn values_of_what_leans_sum_up_to_as_much() {
     for (angle, turn) in LEANS.into_iter().zip([0.0, 0.1, 0.35, 0.6, 0.8]) {
         let mut bsdf =
             Bsdf::from(DiffuseTransmission { reflectance: Rgb::splat(0.7), transmittance: Rgb::splat(0.3), ior: 1.0 });
-        bsdf.lean_from(normal(angle, turn));
+        bsdf.set_geometric_normal(normal(angle, turn));
         let (mut sums, mut density) = ([0.0f64; 2], 0.0f64);
         for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
             let z = (i as f32 + 0.5) / rings as f32 * 2.0 - 1.0;
@@ -82,13 +85,13 @@ fn values_of_what_leans_sum_up_to_as_much() {
     }
 }
 
-/// Known answers for a matt surface: along a direction at the angle ψ from the true surface, in the plane of both normals,
-/// f = cos(ψ, z) + cos(-ψ / s, z) / s, over π.
+/// Known answers for a white diffuse surface: a direction at the angle ψ above the geometric
+/// surface, in the plane of both normals, has the value (sin(ψ + β) + sin(β - ψ / s) / s) / π.
 #[test]
 fn light_of_a_lune_is_spread_over_directions_beside_it() {
     for (angle, stretch) in [(0.3f32, 4.0f32), (1.0, std::f32::consts::PI - 1.0)] {
         let mut bsdf = Bsdf::from(Lambert { albedo: Rgb::WHITE });
-        bsdf.lean_from(normal(angle, 0.0));
+        bsdf.set_geometric_normal(normal(angle, 0.0));
         for psi in [-0.2f32, -0.01, 0.01, 0.1, 0.5, 1.0, 1.5, 2.0] {
             // z leans towards x.
             let (sin, cos) = fun::sin_cos(psi + angle);
@@ -140,7 +143,7 @@ fn what_hardly_leans_is_what_does_not() {
     let mut random = Random::new(104);
     for (name, upright, _) in white() {
         let mut bsdf = upright.clone();
-        bsdf.lean_from(normal(1e-4, 0.3));
+        bsdf.set_geometric_normal(normal(1e-4, 0.3));
         for _ in 0..100 {
             let (wo, wi) = (random.unit_vector(), random.unit_vector());
             assert_eq!(bsdf.eval_pdf(wo, wi), upright.eval_pdf(wo, wi), "{name}");

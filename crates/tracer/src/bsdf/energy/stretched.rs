@@ -22,7 +22,8 @@ pub fn mirror_lost_average(ggx: Ggx) -> f32 {
     if ggx.is_round() { mirror_loss_average(ggx.mean_alpha()) } else { InterfaceLoss::of_mirror(ggx).mean(Side::Thin) }
 }
 
-/// A direction above with density L(w) cos θ / (π L̄) per steradian, with L what [`mirror_lost`] says and L̄ its mean.
+/// Draws a direction above the surface with density L(w) cos θ / (π L̄) per steradian, where L is
+/// [`mirror_lost`] and L̄ its mean.
 pub fn sample_mirror_lost(ggx: Ggx, random: &mut Scramble) -> Vec3 {
     if !ggx.is_round() {
         return InterfaceLoss::of_mirror(ggx).sample(Side::Thin, random);
@@ -33,12 +34,14 @@ pub fn sample_mirror_lost(ggx: Ggx, random: &mut Scramble) -> Vec3 {
     Vec3::new(along * turn, along * sin, cos)
 }
 
-/// Attempts at a direction, of which more than half succeed.
+/// Largest number of attempts at a direction; each succeeds with a probability of more than one
+/// half.
 const MAX_TRIES: u32 = 64;
 
-/// The cosine of such a direction on a round surface. Between the table's entries L is linear in the coordinate x: pick an
-/// interval by a bound on its integral, then cos² evenly within it, and take that with probability L over the interval's
-/// larger entry.
+/// The cosine of a direction that [`sample_mirror_lost`] draws on a round surface, by rejection:
+/// the table is linear in the coordinate x between its entries, so an interval is picked by a bound
+/// on the integral of L, cos² evenly within the interval, and the direction is taken with
+/// probability L over the larger entry of the interval.
 fn sample_cosine(alpha: f32, random: &mut Scramble) -> f32 {
     let (i, t) = place(alpha.sqrt(), ALPHA);
     let entry = |k: usize| {
@@ -67,7 +70,7 @@ fn sample_cosine(alpha: f32, random: &mut Scramble) -> f32 {
     square.sqrt().max(1e-6)
 }
 
-/// The cosine of a coordinate x: cos (1 + α) = x² (cos + α).
+/// The cosine at a coordinate x: cos (1 + α) = x² (cos + α).
 fn cosine(x: f32, alpha: f32) -> f32 {
     let square = x * x;
     (square * alpha / (1.0 + alpha - square)).min(1.0)

@@ -49,8 +49,9 @@ fn a_map_of_normals_that_do_not_lean_changes_nothing() {
     }
 }
 
-/// The cosine of `wi` to a normal that leans from that of the true surface by some 20 degrees, and a quarter of the cosine of
-/// the direction below the surface whose light goes on along `wi`: a quarter as far below it as `wi` is above.
+/// The cosine of `wi` to a shading normal that leans from the geometric normal by some 20 degrees,
+/// plus a quarter of the cosine of the direction below the surface whose light goes on along `wi`:
+/// a quarter as far below the surface as `wi` is above.
 fn leaning_cosine(normal: Vec3, leaning: Vec3, wi: Vec3) -> f32 {
     let lean = leaning.reject_from_normalized(normal).normalize();
     let (along, up) = (wi.dot(lean), wi.dot(normal));
