@@ -4,10 +4,17 @@
 //! it back as one more lobe, f = m (1 - E(μo)) (1 - E(μi)) (Kulla and Conty 2017), which is reciprocal and makes a
 //! perfect mirror white at any roughness. Its colour m counts the absorption of every further bounce:
 //! F² Ē / (1 - F (1 - Ē)) / (π (1 - Ē)) with F Fresnel's mean and Ē that of E.
+//!
+//! Sampling then follows the light, as that of a rough [`Dielectric`](super::Dielectric) does: the
+//! direction that a visible normal reflects is taken with probability G2 / G1; otherwise, that is
+//! with the very probability 1 - E(μo), one is drawn in proportion to (1 - E(μi)) μi. Samples of a
+//! perfect mirror carry a weight of 1, whatever the tables of E miss: light that meets metal many
+//! times, as inside of a solid that is part metal and part glass, neither gains nor loses energy.
 
+use super::energy::{self, Scramble};
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta};
-use super::{BsdfSample, Fresnel, Scatter, choose, energy};
+use super::{BsdfSample, Fresnel, Scatter};
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
@@ -18,13 +25,15 @@ pub struct Conductor {
     fresnel: Fresnel,
     /// m, see above; black without compensation.
     multiple: Rgb,
+    /// m of a perfect mirror, 1 / (π (1 - Ē)): what makes (1 - E(μi)) μi a density.
+    normalization: f32,
 }
 
 impl Conductor {
     /// With single scattering only. `alpha` as in [`Ggx`]: the square of a material's roughness along x and y.
     #[inline]
     pub fn new(fresnel: Fresnel, alpha: Vec2) -> Self {
-        Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK }
+        Self { ggx: Ggx::new(alpha), fresnel, multiple: Rgb::BLACK, normalization: 0.0 }
     }
 
     /// With all scattering among its microfacets.
@@ -33,8 +42,9 @@ impl Conductor {
         if !conductor.ggx.is_smooth() {
             let lost = energy::mirror_lost_average(conductor.ggx);
             if lost > 0.0 {
-                let fold = |f: f32| f * f * (1.0 - lost) / (1.0 - f * lost) * (FRAC_1_PI / lost);
-                conductor.multiple = fresnel.average().map(fold);
+                let normalization = FRAC_1_PI / lost;
+                conductor.multiple = fresnel.average().map(|f| f * f * (1.0 - lost) / (1.0 - f * lost) * normalization);
+                conductor.normalization = normalization;
             }
         }
         conductor
@@ -81,14 +91,14 @@ impl Conductor {
         if self.multiple.is_black() {
             return (single, facing.pdf);
         }
-        let lost = self.lost(wo);
-        self.with_multiple(lost, wi, single, facing.pdf)
+        self.with_multiple(wo, wi, single, facing.value)
     }
 
-    /// Adds the lobe of what is scattered more than once.
-    fn with_multiple(&self, lost: f32, wi: Vec3, single: Rgb, pdf: f32) -> (Rgb, f32) {
-        let more = self.multiple * (lost * self.lost(wi) * wi.z);
-        (single + more, pdf * (1.0 - lost) + wi.z * FRAC_1_PI * lost)
+    /// Adds the lobe of what is scattered more than once to the value and the density of what is
+    /// scattered once.
+    fn with_multiple(&self, wo: Vec3, wi: Vec3, single: Rgb, density: f32) -> (Rgb, f32) {
+        let more = self.lost(wo) * self.lost(wi) * wi.z;
+        (single + self.multiple * more, density + self.normalization * more)
     }
 
     /// 1 - E.
@@ -96,7 +106,7 @@ impl Conductor {
         energy::mirror_lost(self.ggx, w)
     }
 
-    /// A direction by visible normals, or by cosine as often as single scattering loses light.
+    /// A direction by visible normals, or as often as single scattering loses light by what it loses.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
         if wo.z <= 0.0 {
@@ -114,22 +124,18 @@ impl Conductor {
     }
 
     fn sample_compensated(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
-        let lost = self.lost(wo);
-        let (is_multiple, x) = choose(u.x, lost);
-        let u = Vec2::new(x, u.y);
-        let (wi, facing, scatter) = if is_multiple {
-            let wi = juggler_math::warp::cosine_hemisphere(u);
-            if wi.z <= 0.0 {
-                return None;
-            }
-            (wi, self.ggx.mirror(wo, wi), Scatter::Diffuse)
-        } else {
-            let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
+        let mut random = Scramble::new(u, 0.0);
+        // Take the direction with probability G2 / G1.
+        let once = self.ggx.sample_mirror(wo, u).filter(|(_, facing)| random.unit() * facing.pdf < facing.value);
+        let (wi, facing, scatter) = if let Some((wi, facing)) = once {
             (wi, facing, Scatter::Glossy)
+        } else {
+            let wi = energy::sample_mirror_lost(self.ggx, &mut random);
+            (wi, self.ggx.mirror(wo, wi), Scatter::Diffuse)
         };
         let single = self.fresnel.at(facing.cos) * facing.value;
-        let (value, pdf) = self.with_multiple(lost, wi, single, facing.pdf);
-        Some(BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
+        let (value, pdf) = self.with_multiple(wo, wi, single, facing.value);
+        (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
     }
 
     fn mirrored(&self, wo: Vec3) -> BsdfSample {

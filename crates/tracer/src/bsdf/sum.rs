@@ -6,13 +6,17 @@
 //! T(μo) T(μi) / √(A(μo) A(μi)), where A goes from T to T̄ by how much the lobe spreads light: the same as for a mirror and for
 //! a matt lobe at either end. All are the same both ways, where glTF's dimming by T(μo) alone is not.
 //!
-//! What layers keep from leaving a surface that light also meets from below goes back there: see [`below`].
+//! What layers keep from leaving a surface that light also meets from below goes back there: see
+//! [`below`]. Light that a turned shading normal would send below the geometric surface is spread
+//! above it: see [`horizon`].
 
 mod below;
+mod horizon;
 
 use super::{BsdfSample, Lobe, Scatter};
 use arrayvec::ArrayVec;
 use below::Role;
+use horizon::Horizon;
 use juggler_math::{Rgb, Vec2, Vec3};
 
 /// Lobes in one [`Bsdf`].
@@ -25,6 +29,8 @@ pub const MAX_DELTAS: usize = 2 * MAX_LOBES;
 #[derive(Clone, Debug, Default)]
 pub struct Bsdf {
     lobes: ArrayVec<Weighted, MAX_LOBES>,
+    /// The geometric surface, where a map has turned the shading normal away from its normal.
+    horizon: Option<Horizon>,
 }
 
 /// A lobe and its share.
@@ -87,7 +93,7 @@ impl Bsdf {
     /// Without lobes: absorbs all light.
     #[inline(always)]
     pub fn new() -> Self {
-        Self { lobes: ArrayVec::new() }
+        Self { lobes: ArrayVec::new(), horizon: None }
     }
 
     /// The lobes that `add` pushes.
@@ -169,6 +175,14 @@ impl Bsdf {
     /// [`Bsdf::eval`] and [`Bsdf::pdf`] in one go.
     #[inline]
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        match &self.horizon {
+            None => self.eval_pdf_of_lobes(wo, wi),
+            Some(horizon) => self.eval_pdf_above(horizon, wo, wi),
+        }
+    }
+
+    #[inline]
+    fn eval_pdf_of_lobes(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         match self.lobes.as_slice() {
             [] => (Rgb::BLACK, 0.0),
             [one] => {
@@ -184,6 +198,14 @@ impl Bsdf {
     /// of rough glass does, by `choice` in [0, 1), which counts only where [`Bsdf::has_choice`].
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
+        match &self.horizon {
+            None => self.sample_of_lobes(wo, u, choice),
+            Some(horizon) => self.sample_above(horizon, wo, u, choice),
+        }
+    }
+
+    #[inline]
+    fn sample_of_lobes(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         match self.lobes.as_slice() {
             [] => None,
             [one] => {
@@ -326,7 +348,8 @@ impl Bsdf {
         for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.has_specular()) {
             for delta in self.deltas_of_one(one, wo) {
                 let weight = one.weight * self.dimming(index, wo, delta.wi);
-                let full = deltas.try_push(BsdfSample { weight: delta.weight * weight, ..delta });
+                let delta = self.delta_above(BsdfSample { weight: delta.weight * weight, ..delta });
+                let full = deltas.try_push(delta);
                 debug_assert!(full.is_ok(), "more than {MAX_DELTAS} deltas");
             }
         }

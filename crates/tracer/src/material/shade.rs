@@ -81,6 +81,12 @@ impl Shade {
         }
     }
 
+    /// Sets the geometric normal, in world space, of a surface whose shading normal a map has
+    /// turned; the frame is known by then. See [`Bsdf::set_geometric_normal`].
+    pub(super) fn set_geometric_normal(&mut self, normal: Vec3) {
+        self.bsdf.set_geometric_normal(self.frame.to_local(normal));
+    }
+
     /// The share of light from everywhere that comes back towards `wo`, a unit vector of the world: its colour without light.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         self.bsdf.albedo(self.frame.to_local(wo))

@@ -199,14 +199,17 @@ impl MaterialTable {
     /// What is nothing but a scattering function, in its frame.
     fn physical(&self, physical: &Physical, view: &View, shade: &mut Shade) {
         let mut normal = facing_normal(view, view.normal);
+        let is_mapped = view.normal != view.surface.shading_normal;
         if physical.interior().is_some() {
-            let is_mapped = view.normal != view.surface.shading_normal;
             let outwards = if view.is_outside() { normal } else { -normal };
             normal = if is_mapped { outwards } else { view.normal };
         }
         shade.frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
         physical.add_lobes(&self.textures, view, &mut shade.bsdf);
         shade.transmissive = physical.is_transmissive();
+        if is_mapped {
+            shade.set_geometric_normal(view.surface.normal);
+        }
     }
 
     /// The classic material as physics would have it.
@@ -215,6 +218,9 @@ impl MaterialTable {
         shade.emission += lobe.emission;
         lobe.add_lobes(view.is_outside(), &mut shade.bsdf);
         shade.lamp_scale = lobe.lamp_scale();
+        if view.normal != view.surface.shading_normal {
+            shade.set_geometric_normal(view.surface.normal);
+        }
     }
 
     /// What a shadow ray of the classic integrator keeps when it crosses material `id` at this point: its

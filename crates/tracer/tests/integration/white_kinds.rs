@@ -20,7 +20,7 @@ struct Case {
 
 /// Textures that the materials name.
 const TEXTURES: &str = r#"{
-    "height": {"noise": {"scale": 0.3, "space": "local"}},
+    "height": {"noise": {"scale": 4, "space": "local"}},
     "leaning": {"constant": {"color": [0.7, 0.45, 0.9]}},
     "spots": {"checker": {"size": 0.3, "even": 0.1, "odd": 0.9, "space": "local"}}
 }"#;
@@ -103,9 +103,9 @@ fn combined() -> Vec<Case> {
     for material in [white, metal, glass] {
         for strength in [0.3, 1.0] {
             let fields = format!(r#""texture": "leaning", "strength": {strength}, "material": {material}"#);
-            all.extend(lowers("normal_map", 0.0, &[fields]));
+            all.extend(lowers("normal_map", 0.99, &[fields]));
             let fields = format!(r#""height": "height", "distance": {}, "material": {material}"#, 0.1 * strength);
-            all.extend(lowers("bump_map", 0.0, &[fields]));
+            all.extend(lowers("bump_map", 0.99, &[fields]));
         }
     }
     all

@@ -45,7 +45,7 @@ fn metals_keep_all_light_and_add_none() {
             for f0 in [0.04, 0.5, 0.9] {
                 let fresnel = Fresnel::tinted(Rgb::splat(f0), Rgb::WHITE);
                 let [once, all] = [Conductor::new(fresnel, alpha), Conductor::compensated(fresnel, alpha)]
-                    .map(|metal| furnace(&metal.into(), towards(cos), 48).g);
+                    .map(|metal| furnace(&metal.into(), towards(cos), 192).g);
                 assert!(once <= all + 1e-3 && all <= 1.0, "{alpha} {cos} {f0}: {once} {all}");
             }
         }

@@ -4,6 +4,7 @@ mod chart;
 mod energy;
 mod examples;
 mod grid;
+mod horizon;
 mod needles;
 mod numbers;
 mod principled;

@@ -2,7 +2,7 @@
 
 use super::examples::Breadth;
 use super::*;
-use crate::bsdf::{Dielectric, ThinDielectric};
+use crate::bsdf::{Conductor, Dielectric, Fresnel, ThinDielectric};
 use juggler_math::testing::close;
 
 /// Chance of a false alarm in the whole suite.
@@ -83,6 +83,19 @@ fn light_leaves_a_slab_of_rough_glass() {
         let mean = energies.iter().sum::<f64>() / 4e4;
         let spread = energies.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / 4e4;
         assert!((mean - 1.0).abs() < 0.002 && spread < variance, "{alpha}: {mean}, {spread}");
+    }
+}
+
+/// A perfect mirror keeps the energy of each path, whatever the tables of its loss miss.
+#[test]
+fn samples_of_white_metal_weigh_one() {
+    let mut random = Random::new(105);
+    for alpha in [(0.05, 0.05), (0.3, 0.3), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)].map(Vec2::from) {
+        let metal = Bsdf::from(Conductor::compensated(Fresnel::WHITE, alpha));
+        for wo in views(false).into_iter().flat_map(|wo| [wo; 500]) {
+            let sample = metal.sample(wo, random.vec2(), 0.0).unwrap();
+            assert!(close(sample.weight.g, 1.0, 1e-5), "{alpha} {wo}: {sample:?}");
+        }
     }
 }
 

@@ -73,8 +73,7 @@ fn grid() -> Vec<Principled> {
     all
 }
 
-/// Whether each number has an effect. A patchwork with metal keeps the usual index: light leaves a ball of denser glass by a
-/// thirtieth of what meets it, which multiplies what tables miss of the metal inside.
+/// Whether each number has an effect.
 fn has_effect(numbers: &Principled) -> bool {
     let has_no_glass = numbers.transmission * (1.0 - numbers.metallic) == 0.0;
     !((numbers.metallic == 1.0 && (numbers.transmission > 0.0 || numbers.diffuse_transmission > 0.0))
@@ -83,7 +82,7 @@ fn has_effect(numbers: &Principled) -> bool {
         || (numbers.roughness == 0.0 && numbers.anisotropy > 0.0)
         || (numbers.clearcoat == 0.0 && numbers.clearcoat_roughness > 0.0)
         || (numbers.sheen_color.is_black() && numbers.sheen_roughness != 0.5)
-        || (numbers.metallic > 0.0 && numbers.ior != 1.5))
+        || (numbers.metallic == 1.0 && numbers.ior != 1.5))
 }
 
 /// Surfaces and the sides from which light comes: above, and below where light comes in. Polished glass keeps some of the

@@ -34,7 +34,7 @@ use mirror_grazing::MIRROR_GRAZING;
 use mirror_lost::{MIRROR_LOST, MIRROR_LOST_MEAN};
 pub use scramble::Scramble;
 use sheen_albedo::SHEEN;
-pub use stretched::{mirror_lost, mirror_lost_average};
+pub use stretched::{mirror_lost, mirror_lost_average, sample_mirror_lost};
 pub use zone::Side;
 
 /// Entries along the cosine's coordinate, from 0 to 1.

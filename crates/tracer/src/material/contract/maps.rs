@@ -49,6 +49,18 @@ fn a_map_of_normals_that_do_not_lean_changes_nothing() {
     }
 }
 
+/// The cosine of `wi` to a shading normal that leans from the geometric normal by some 20 degrees,
+/// plus a quarter of the cosine of the direction below the surface whose light goes on along `wi`:
+/// a quarter as far below the surface as `wi` is above.
+fn leaning_cosine(normal: Vec3, leaning: Vec3, wi: Vec3) -> f32 {
+    let lean = leaning.reject_from_normalized(normal).normalize();
+    let (along, up) = (wi.dot(lean), wi.dot(normal));
+    let (radius, psi) = (along.hypot(up), up.atan2(along));
+    let angle = leaning.angle_between(normal);
+    let cosine = |psi: f32| (radius * (psi + angle).sin()).max(0.0);
+    if up <= 0.0 { 0.0 } else { cosine(psi) + 0.25 * cosine(-0.25 * psi) }
+}
+
 #[test]
 fn a_map_that_leans_is_a_surface_that_leans() {
     let mut random = Random::new(822);
@@ -63,11 +75,11 @@ fn a_map_that_leans_is_a_surface_that_leans() {
         let surface = Surface::new(Vec3::ZERO, 0.0, n, Vec2::ZERO);
         let view = View { wo: n, tangents: Some(&tangents), ..View::of(&surface) };
         let wi = random.unit_vector();
-        let expected = 0.7 / PI * wi.dot(leaning).max(0.0);
+        let expected = 0.7 / PI * leaning_cosine(n, leaning, wi);
         assert!(close(light(&table, id, &view, wi).g, expected, 1e-4) || expected < 1e-5, "{wi}");
         // From below it is the same sheet, its relief turned over.
         let below = View { wo: -n, ..view };
-        let expected = 0.7 / PI * wi.dot(-leaning).max(0.0);
+        let expected = 0.7 / PI * leaning_cosine(-n, -leaning, wi);
         assert!(close(light(&table, id, &below, wi).g, expected, 1e-4) || expected < 1e-5, "{wi}");
     }
 }
