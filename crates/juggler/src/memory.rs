@@ -22,7 +22,7 @@ const SHADOW: u64 = 96;
 /// Bytes of an object that is stored, while the world is built.
 const OBJECT: u64 = 640;
 /// Bytes of a shape that emits light, while the world is built.
-const EMITTER: u64 = 832;
+const EMITTER: u64 = 896;
 /// Bytes of a triangle that stands in the scene itself, while the world is built.
 const TRIANGLE: u64 = 160;
 

@@ -74,7 +74,6 @@ fn significant(value: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::Scene;
 
     fn scene(lights: &str, more: &str) -> Scene {
