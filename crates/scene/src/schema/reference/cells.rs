@@ -156,7 +156,7 @@ fn range(schema: &Value) -> String {
 /// A limit, with an exponent where its digits would fill a line.
 fn shown(bound: f64) -> String {
     let size = bound.abs();
-    if size >= 1e9 || size > 0.0 && size < 1e-5 { format!("{bound:e}") } else { bound.to_string() }
+    if size >= 1e16 || size > 0.0 && size < 1e-9 { format!("{bound:e}") } else { bound.to_string() }
 }
 
 /// Compact JSON with a blank after commas and colons.
