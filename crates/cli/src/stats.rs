@@ -50,6 +50,8 @@ struct RayCounts {
     secondary: u64,
     total: u64,
     per_second: f64,
+    /// Samples of this run that were NaN, infinite or beyond 10^36, and count as black.
+    not_finite: u64,
 }
 
 #[derive(Debug, Serialize)]
@@ -112,6 +114,7 @@ impl<'s> Stats<'s> {
                 secondary: rays.secondary,
                 total: rays.total(),
                 per_second: rays_per_second(rays, seconds.render),
+                not_finite: rays.not_finite,
             },
             geometry: Geometry {
                 shapes: geometry.shapes,

@@ -21,6 +21,8 @@ const RAY: u64 = 1024;
 const SHADOW: u64 = 96;
 /// Bytes of an object that is stored, while the world is built.
 const OBJECT: u64 = 640;
+/// Bytes of a shape that emits light, while the world is built.
+const EMITTER: u64 = 896;
 /// Bytes of a triangle that stands in the scene itself, while the world is built.
 const TRIANGLE: u64 = 160;
 
@@ -125,6 +127,7 @@ impl Memory {
         self.world.truncate(1);
         self.world.extend(world);
         self.world.push(part("trees", geometry.bvh_bytes as u64));
+        self.world.push(part("emitters", geometry.emitter_bytes as u64));
         // Meshes that keep their shape are held once; they are counted here all the same.
         let more = picture.worlds_beside().saturating_mul(geometry.geometry_bytes.saturating_add(geometry.bvh_bytes));
         self.world.push(part(BESIDE, more as u64));
@@ -203,7 +206,9 @@ impl Memory {
 
 fn of_scene(needs: &Needs) -> u64 {
     let objects = needs.objects.saturating_mul(OBJECT);
-    needs.text.saturating_add(objects).saturating_add(needs.triangles.saturating_mul(TRIANGLE))
+    let triangles = needs.triangles.saturating_mul(TRIANGLE);
+    let emitters = needs.emitters.saturating_mul(EMITTER);
+    [objects, triangles, emitters].into_iter().fold(needs.text, u64::saturating_add)
 }
 
 fn part(what: impl Into<String>, bytes: u64) -> Part {

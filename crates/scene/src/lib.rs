@@ -30,7 +30,7 @@ pub mod suggest;
 pub mod validate;
 
 pub use bookmark::{camera_json, with_camera};
-pub use compile::{Compiled, Names};
+pub use compile::{Compiled, Illuminance, Names};
 pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};
 pub use fingerprint::Fingerprint;
 pub use presets::{BuiltIn, built_in_scenes};

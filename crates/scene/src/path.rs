@@ -43,6 +43,28 @@ impl Path {
         path
     }
 
+    /// The path as a JSON pointer (RFC 6901): `/materials/red/phong/diffuse`.
+    pub fn pointer(&self) -> String {
+        let step = |step: &Step| match step {
+            Step::Key(key) => format!("/{}", key.replace('~', "~0").replace('/', "~1")),
+            Step::Index(index) => format!("/{index}"),
+        };
+        self.0.iter().map(step).collect()
+    }
+
+    /// The path that a JSON pointer writes. Numbers are places in arrays, but for the names of materials, textures and groups.
+    pub fn from_pointer(pointer: &str) -> Self {
+        let mut path = Self::root();
+        for step in pointer.split('/').skip(1).map(|step| step.replace("~1", "/").replace("~0", "~")) {
+            let is_name = matches!(path.0.as_slice(), [Step::Key(part)] if part != "objects");
+            path.0.push(match step.parse() {
+                Ok(index) if !is_name => Step::Index(index),
+                _ => Step::Key(step),
+            });
+        }
+        path
+    }
+
     /// The steps in order.
     pub fn steps(&self) -> &[Step] {
         &self.0
@@ -147,6 +169,16 @@ fn is_plain(key: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pointers_lead_back() {
+        let path = Path::root().key("materials").key("7").key("phong").key("a/b~1").index(3).key("color");
+        assert_eq!(path.pointer(), "/materials/7/phong/a~1b~01/3/color");
+        assert_eq!(Path::from_pointer(&path.pointer()), path);
+        let object = Path::root().key("objects").index(3).key("material");
+        assert_eq!(Path::from_pointer(&object.pointer()), object);
+        assert_eq!(Path::from_pointer(""), Path::root());
+    }
 
     #[test]
     fn is_written_as_people_write_it() {

@@ -1,6 +1,6 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
-use crate::compile::{self, Assembly, Compiled, Files, Library, Needs, light_files, pictures};
+use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Needs, light_files, pictures};
 use crate::description::{Animation, Description};
 use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
@@ -178,9 +178,14 @@ impl Scene {
 
     /// All that is wrong with the scene, warnings included, without building the world.
     pub fn check(&self) -> Problems {
+        self.check_with_light().0
+    }
+
+    /// [`Scene::check`], and the light that brings the most to the middle of the scene.
+    pub fn check_with_light(&self) -> (Problems, Option<Illuminance>) {
         let (moments, wrong) = self.moments();
-        let more = Assembly::of(&self.description, &moments, self.files()).1;
-        self.report(joined(joined(self.own_findings(), wrong), more))
+        let (assembly, more) = Assembly::of(&self.description, &moments, self.files());
+        (self.report(joined(joined(self.own_findings(), wrong), more)), assembly.illuminance)
     }
 
     /// Builds the world.
@@ -207,9 +212,8 @@ impl Scene {
         if broken {
             return Err(SceneError::Problems(warnings));
         }
-        let (world, names) = (Arc::clone(&earlier.world), Arc::clone(&earlier.names));
         let settings = self.description.render.clone();
-        Ok(Compiled { world, cameras, course, settings, warnings, names })
+        Ok(Compiled { cameras, course, settings, warnings, ..earlier.clone() })
     }
 
     /// Whether the same stands in both, however it is looked at. Files are compared by their contents.

@@ -4,7 +4,7 @@ use crate::console;
 use crate::failure::Failure;
 use crate::source;
 use clap::Args;
-use juggler::scene::Problems;
+use juggler::scene::{Illuminance, Problems};
 
 /// Flags of `juggler check`.
 #[derive(Debug, Args)]
@@ -17,19 +17,23 @@ impl Check {
     /// Prints what is wrong; warnings alone are no reason to say no.
     pub fn run(self) -> Result<(), Failure> {
         match source::load(&self.scene, None) {
-            Ok(scene) => self.answer(&scene.check()),
-            Err(Failure::Scene(problems)) => self.answer(&problems),
+            Ok(scene) => {
+                let (problems, light) = scene.check_with_light();
+                self.answer(&problems, light.as_ref())
+            }
+            Err(Failure::Scene(problems)) => self.answer(&problems, None),
             Err(failure) => Err(failure),
         }
     }
 
-    fn answer(&self, problems: &Problems) -> Result<(), Failure> {
+    fn answer(&self, problems: &Problems, light: Option<&Illuminance>) -> Result<(), Failure> {
         if !problems.list().is_empty() {
             console::say(&problems.render(console::color()));
         }
         if problems.errors() > 0 {
             return Err(Failure::No);
         }
-        console::print(&format!("{}: no mistakes", self.scene))
+        let light = light.map(|light| format!("; {light}")).unwrap_or_default();
+        console::print(&format!("{}: no mistakes{light}", self.scene))
     }
 }

@@ -13,7 +13,7 @@ use clap::Args;
 use juggler::film;
 use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
-use juggler::scene::{Compiled, Scene, import};
+use juggler::scene::{Compiled, Illuminance, Scene, import};
 use juggler::tracer::background::AnyBackground;
 use juggler::tracer::world::Geometry;
 use serde_json::{Map, Value, json};
@@ -105,7 +105,8 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     if geometry.instances > 0 {
         row("instances", geometry.instances.to_string());
     }
-    row("lights", geometry.lights.to_string());
+    let brightest = compiled.illuminance.as_ref().map(|light| format!(", {light}")).unwrap_or_default();
+    row("lights", format!("{}{brightest}", geometry.lights));
     row("background", background_in_words(compiled.world.backdrop()));
     row("far lights", far_in_words(&compiled.world.far_lights()));
     row("materials", description.materials.len().to_string());
@@ -181,6 +182,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
             "instances": geometry.instances,
             "lights": geometry.lights,
         },
+        "illuminance": compiled.illuminance.as_ref().map(|Illuminance { light, value }| json!({"light": light, "middle": value})),
         "background": {"kind": world.backdrop().name(), "mean": world.backdrop().mean().to_array()},
         "far_lights": far,
         "materials": description.materials.len(),

@@ -209,3 +209,32 @@ fn a_control_group_holds_it() {
     let run = Run::of(scoped.output().unwrap());
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
 }
+
+#[test]
+fn instanced_emitters_are_foretold() {
+    let folder = Folder::new();
+    let ten = |group: &str| vec![format!(r#"{{"group": "{group}"}}"#); 10].join(", ");
+    let scene = |emitters: &str| {
+        let row = r#"{"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [9, 0, 0], "radius": 1}, "count": 1000},
+            "material": {"emissive": {}}}"#;
+        let [b, c, d] = ["a", "b", "c"].map(ten);
+        format!(
+            r#"{{"version": 1, "render": {{"integrator": "path"}},
+                "groups": {{"a": [{row}], "b": [{b}], "c": [{c}], "d": [{d}]}}, "objects": [{emitters}]}}"#
+        )
+    };
+    let line = "row.json --size 8x8 --samples 1 -o a.png --threads 2";
+    // 300,000 emitters of a file of 1,000 bytes.
+    fs::write(folder.path("row.json"), scene(&[r#"{"group": "c"}"#; 3].join(", "))).unwrap();
+    let stats = folder.stats(line);
+    let (peak, expected) = peaks(&stats);
+    assert!(peak <= expected && expected < 2 * peak, "{peak} of {expected}");
+    let refused = folder.run(&format!("render {line} --max-memory 100M"));
+    assert_eq!((refused.status, refused.stderr.contains("the scene")), (2, true), "{}", refused.stderr);
+    // Ten million are too many.
+    fs::write(folder.path("row.json"), scene(&ten("d"))).unwrap();
+    let refused = folder.run(&format!("render {line}"));
+    assert_eq!(refused.status, 2);
+    assert!(refused.stderr.contains("10000000 shapes that emit light, the limit is 4000000"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("objects[4]"), "{}", refused.stderr);
+}

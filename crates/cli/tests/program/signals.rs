@@ -57,3 +57,20 @@ fn progress_comes_while_it_renders() {
     lines.read_to_string(&mut rest).unwrap();
     assert!(rest.ends_with("interrupted\n"), "{rest}");
 }
+
+#[test]
+fn a_second_signal_ends_the_program_at_once() {
+    let folder = Folder::new();
+    // Nobody reads on: the program waits in the midst of writing, where the first signal can only be remembered.
+    let mut command = folder.command("render ball.json --samples 1 --size 1000x1000 -o -");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    child.stdout.as_mut().unwrap().read_exact(&mut [0; 8]).unwrap();
+    std::thread::sleep(Duration::from_millis(500));
+    harness::signal(&child, "-INT");
+    std::thread::sleep(Duration::from_millis(500));
+    assert_eq!(child.try_wait().unwrap(), None, "the pipe was not full");
+    let second = Instant::now();
+    harness::signal(&child, "-INT");
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(second.elapsed() < Duration::from_secs(5), "{:?}", second.elapsed());
+}

@@ -32,7 +32,7 @@ fn the_keys_are_those_that_were_promised() {
         ]
     );
     assert_eq!(keys(&stats["seconds"]), ["load", "build", "render", "denoise", "write", "total"]);
-    assert_eq!(keys(&stats["rays"]), ["camera", "shadow", "secondary", "total", "per_second"]);
+    assert_eq!(keys(&stats["rays"]), ["camera", "shadow", "secondary", "total", "per_second", "not_finite"]);
     assert_eq!(keys(&stats["geometry"]), ["shapes", "triangles", "unique_triangles", "instances", "lights"]);
     assert_eq!(keys(&stats["memory"]), ["peak_rss_bytes", "expected_bytes", "geometry_bytes", "bvh_bytes"]);
     assert_eq!(keys(&stats["film"]), ["mean", "hash"]);
@@ -111,4 +111,29 @@ fn what_clamping_takes_is_always_told() {
     let film = folder.run("render clamped.json --frames 0..2 -o film.gif");
     assert_eq!(film.status, 0, "{}", film.stderr);
     assert_eq!(film.stderr.matches("clamping removed ").count(), 2, "{}", film.stderr);
+}
+
+#[test]
+fn samples_that_are_not_finite_are_counted_and_black() {
+    let folder = Folder::new();
+    let scene = r#"{"version": 1, "render": {"size": [24, 16], "samples": 4},
+        "background": {"solid": {"color": [1e30, 0, 0]}},
+        "lights": [{"point": {"position": [0, 4, 4], "intensity": 1e30}}],
+        "objects": [{"shape": {"sphere": {}}, "material": {"phong": {"diffuse": [1e30, 1, 1]}}}]}"#;
+    fs::write(folder.path("wild.json"), scene).unwrap();
+    let told = |flags: &str| {
+        let run = folder.run(&format!("render wild.json {flags} -o wild.exr --stats s.json"));
+        assert_eq!(run.status, 0, "{}", run.stderr);
+        let stats: Value = serde_json::from_str(&fs::read_to_string(folder.path("s.json")).unwrap()).unwrap();
+        let lost = stats["rays"]["not_finite"].as_u64().unwrap();
+        assert!(lost > 10 && lost < 24 * 16 * 4, "{lost}");
+        assert!(run.stdout.contains(&format!("{lost} samples not finite")), "{}", run.stdout);
+        assert!(stats["film"]["mean"].as_array().unwrap().iter().all(Value::is_number), "{}", stats["film"]);
+        (lost, stats["film"]["hash"].clone())
+    };
+    let whole = told("--threads 1");
+    assert_eq!(told("--threads 4"), whole);
+    assert_ne!(told("--samples 1"), whole);
+    let run = folder.run("render wild.json -q -o wild.exr");
+    assert!(run.stderr.contains("samples not finite, counted as black"), "{}", run.stderr);
 }

@@ -1,5 +1,6 @@
 //! How many objects a scene places and how many it must store, before any is placed: groups within groups multiply.
 
+use super::emitting;
 use crate::description::{Description, Object};
 use crate::path::Path;
 use crate::report::Finding;
@@ -10,6 +11,8 @@ use juggler_tracer::world;
 pub const MAX_OBJECTS: u64 = world::MAX_OBJECTS;
 /// Most objects that a scene stores.
 pub const MAX_STORED: u64 = 4_000_000;
+/// Most shapes of a scene that emit light, those of groups counted as often as they are placed.
+pub const MAX_EMITTERS: u64 = 4_000_000;
 /// Most groups within each other.
 pub const MAX_NESTING: u32 = 64;
 /// A group is stored once and shared when all its placements together make more objects than this.
@@ -57,6 +60,7 @@ pub fn count(scene: &Description) -> Result<Counts<'_>, Vec<Finding>> {
         count_placements(scene, &mut counts);
         let stored = count_stored(scene, &mut counts);
         findings.extend(too_many(placed, stored).map(|finding| finding.at(top)));
+        findings.extend(emitting::too_many(scene));
     }
     if findings.is_empty() { Ok(counts) } else { Err(findings) }
 }

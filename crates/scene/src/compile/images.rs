@@ -139,9 +139,19 @@ impl Images for Files<'_> {
 }
 
 impl Files<'_> {
+    /// Where a texture is described: among the scene's textures, or where it is written in place, by the name that it
+    /// has got there.
+    pub fn texture_path(&self, name: &str) -> Path {
+        let named = self.origin.and_then(|(_, tree)| tree.get("textures")?.get(name));
+        if named.is_none() && name.starts_with('/') {
+            return Path::from_pointer(name);
+        }
+        Path::root().key("textures").key(name)
+    }
+
     /// The file of an image texture.
     fn of_texture(&self, name: &str, image: &Image) -> PathBuf {
-        self.locate(&Path::root().key("textures").key(name).key("image").key("file"), &image.file)
+        self.locate(&self.texture_path(name).key("image").key("file"), &image.file)
     }
 }
 

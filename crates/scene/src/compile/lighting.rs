@@ -118,6 +118,10 @@ pub fn files(scene: &Description, files: &Files<'_>) -> BTreeSet<(PathBuf, Purpo
 pub fn lights(lights: &[AnyLight], files: Files<'_>, findings: &mut Vec<Finding>) -> Vec<AnyLight> {
     let mut lights = lights.to_vec();
     for (i, light) in lights.iter_mut().enumerate() {
+        // The path is made only where it is needed: a scene may have a million lights.
+        if light.ies().is_none() {
+            continue;
+        }
         let path = of_light(i, light);
         let Some(ies) = light.ies() else { continue };
         match &files.library.profile(&files.locate(&path, &ies.file)).content {

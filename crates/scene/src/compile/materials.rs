@@ -25,7 +25,7 @@ impl Materials {
         // Unknown names have been reported: `validate::names`.
         for (name, error) in errors.iter().filter(|(_, error)| !error.is_unknown_name()) {
             let kind = scene.textures.get(name).map(crate::kind::name_of).unwrap_or_default();
-            let path = Path::root().key("textures").key(name.as_str()).key(kind);
+            let path = files.texture_path(name).key(kind);
             findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }
         let named = scene.materials.iter().map(|(name, material)| (name.clone(), material.clone()));

@@ -144,11 +144,12 @@ impl Files<'_> {
 
     /// The mesh that a description at `path` means: its own arrays, or those of its file, blended with its morphs.
     pub fn mesh(&self, mesh: &Mesh, path: &Trail<'_>, findings: &mut Vec<Finding>) -> Option<Mesh> {
-        if mesh.morphs.is_empty() {
-            self.base(mesh, path, findings)
-        } else {
-            Some(self.data(mesh, path, findings)?.into())
+        if mesh.morphs.is_empty() && (mesh.file.is_none() || mesh.crease_angle_degrees.is_none()) {
+            return self.base(mesh, path, findings);
         }
+        let mut own = Mesh::from(self.data(mesh, path, findings)?);
+        own.crease_angle_degrees = mesh.crease_angle_degrees;
+        Some(own)
     }
 
     /// What a mesh is at `moments` while the shutter is open, where that is not always the same.
@@ -167,7 +168,7 @@ impl Files<'_> {
             // What is odd about a file has been said.
             keys.push(self.data(at, path, &mut Vec::new())?);
         }
-        Some(Mesh::moving(keys))
+        Some(Mesh::moving(keys, first.crease_angle_degrees))
     }
 
     /// The arrays of a mesh, blended.

@@ -14,6 +14,8 @@ use std::sync::Arc;
 mod count;
 mod course;
 mod defaults;
+mod emitting;
+mod illuminance;
 mod images;
 mod labels;
 mod lighting;
@@ -25,7 +27,8 @@ mod placing;
 mod settings;
 mod shelf;
 
-pub use count::{MAX_NESTING, MAX_OBJECTS, MAX_STORED};
+pub use count::{MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_STORED};
+pub use illuminance::Illuminance;
 pub(crate) use images::pictures;
 pub use images::{Estimate, MAX_SIDE, MAX_TEXELS, estimate as estimate_picture};
 pub use labels::{Names, REST};
@@ -51,6 +54,8 @@ pub struct Compiled {
     pub warnings: Problems,
     /// Names of what masks and layers tell apart.
     pub names: Arc<Names>,
+    /// The light that brings the most to the middle of the scene.
+    pub illuminance: Option<Illuminance>,
 }
 
 /// Everything of a [`World`] but its hierarchy, which takes time to build.
@@ -71,6 +76,8 @@ pub struct Assembly {
     pub labels: Labels,
     /// As [`Compiled::names`].
     pub names: Names,
+    /// As [`Compiled::illuminance`].
+    pub illuminance: Option<Illuminance>,
 }
 
 impl Compiled {
@@ -105,10 +112,11 @@ impl Assembly {
                 (Vec::new(), Vec::new())
             }
         };
-        let lit =
-            !scene.lights.is_empty() || materials.glows() || background.as_ref().is_some_and(|b| lights(scene, b));
+        let glows = materials.glows() || background.as_ref().is_some_and(|b| lights(scene, b));
+        let lit = glows || !scene.lights.is_empty();
         let bounds = bounds(&objects);
-        let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
+        let farthest = farthest(&objects, &entries);
+        let (cameras, course) = cameras(scene, moments, &bounds, &farthest, &mut findings);
         let mut lights: Vec<Lamp> = if lit {
             // What is wrong with files has been said.
             let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
@@ -119,17 +127,22 @@ impl Assembly {
         if lit {
             names.mark(&mut lights, &sources);
         }
+        let illuminance = illuminance::at_the_middle(&lights, lit, &bounds);
+        if lit && !glows {
+            findings.extend(illuminance::warning(scene, &lights, &bounds));
+        }
         let labels = names.labels(scene, entries);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut names, &mut findings);
-        (Self { objects, materials, lights, background, cameras, course, labels, names }, findings)
+        (Self { objects, materials, lights, background, cameras, course, labels, names, illuminance }, findings)
     }
 
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
         let (cameras, course, names) = (self.cameras, self.course, Arc::new(self.names));
-        Compiled { world: Arc::new(world), cameras, course, settings, warnings, names }
+        let illuminance = self.illuminance;
+        Compiled { world: Arc::new(world), cameras, course, settings, warnings, names, illuminance }
     }
 }
 
@@ -144,7 +157,8 @@ pub fn look_at(
 ) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
     let mut findings = Vec::new();
     settings::check(&scene.render, &mut findings);
-    let (cameras, course) = cameras(scene, moments, &or_some(world.bounds()), &mut findings);
+    let (cameras, course) =
+        cameras(scene, moments, &or_some(world.bounds()), &Path::root().key("objects"), &mut findings);
     (cameras, course, findings)
 }
 
@@ -165,8 +179,34 @@ fn or_some(bounds: Aabb) -> Aabb {
     if bounds.is_empty() { Transform::IDENTITY.aabb(&Aabb { min: -Vec3::ONE, max: Vec3::ONE }) } else { bounds }
 }
 
-/// The scene's cameras or the default one, each tried once; the chosen one first.
-fn cameras(scene: &Description, moments: &[Description], bounds: &Aabb, findings: &mut Vec<Finding>) -> Cameras {
+/// Where the object is described that reaches farthest from the origin; `entries` are the numbers of the first shapes of
+/// the scene's objects.
+fn farthest(objects: &[Object], entries: &[u32]) -> Path {
+    let reach = |bounds: Aabb| match bounds.is_empty() {
+        true => 0.0,
+        false => bounds.min.abs().max(bounds.max.abs()).max_element(),
+    };
+    let (mut first, mut most, mut number) = (0u64, 0.0, 0);
+    for object in objects {
+        let size = reach(object.bounds());
+        if size > most {
+            (most, number) = (size, first);
+        }
+        first = first.saturating_add(object.shapes());
+    }
+    let entry = entries.partition_point(|entry| u64::from(*entry) <= number).saturating_sub(1);
+    Path::root().key("objects").index(entry)
+}
+
+/// The scene's cameras or the default one, each tried once; the chosen one first. That the default one cannot be is the
+/// fault of the object that reaches `farthest`.
+fn cameras(
+    scene: &Description,
+    moments: &[Description],
+    bounds: &Aabb,
+    farthest: &Path,
+    findings: &mut Vec<Finding>,
+) -> Cameras {
     let [width, height] = scene.render.size;
     let size = UVec2::new(width.max(1), height.max(1));
     let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
@@ -183,7 +223,7 @@ fn cameras(scene: &Description, moments: &[Description], bounds: &Aabb, findings
         cameras.push((name.clone(), camera.clone()));
     }
     if cameras.is_empty() {
-        cameras.push(("default".into(), defaults::camera(bounds, size)));
+        cameras.push(("default".into(), default_camera(bounds, size, farthest, findings)));
     }
     if let Some(chosen) = &scene.render.camera
         && let Some(at) = cameras.iter().position(|(name, _)| *name == chosen.0)
@@ -193,13 +233,22 @@ fn cameras(scene: &Description, moments: &[Description], bounds: &Aabb, findings
     let course = cameras.first().map(|(name, _)| course::camera(scene, moments, name)).unwrap_or_default();
     for (camera, moment) in course.iter().zip(moments) {
         // The same mistake at the frame itself has been reported.
-        if let (Err(invalid), true) = (camera.project(size), findings.is_empty()) {
+        if let (Err(invalid), true) = (camera.project(size), !findings.iter().any(Finding::is_error)) {
             let path = Path::root().key(if moment.camera.is_some() { "camera" } else { "cameras" });
             let message = format!("while the shutter is open, {}", invalid.message);
             findings.push(Finding::error(message).at(path.join(invalid.field)));
         }
     }
     (cameras, course)
+}
+
+fn default_camera(bounds: &Aabb, size: UVec2, farthest: &Path, findings: &mut Vec<Finding>) -> AnyCamera {
+    let camera = defaults::camera(bounds, size);
+    if camera.project(size).is_err() {
+        let problem = Finding::error("this object reaches too far for the default camera to see all of the scene");
+        findings.push(problem.at(farthest).help("make it smaller, or write a `camera`"));
+    }
+    camera
 }
 
 fn try_camera(camera: &AnyCamera, size: UVec2, path: &Path, findings: &mut Vec<Finding>) {

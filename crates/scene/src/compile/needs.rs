@@ -1,6 +1,7 @@
 //! What a scene will need memory for, told before its files are read and its world is built.
 
 use super::count::{count, stored};
+use super::emitting::emitters;
 use super::images::pictures;
 use super::lighting::{self, Purpose};
 use super::meshes::Files;
@@ -26,6 +27,8 @@ pub struct Needs {
     pub triangles: u64,
     /// Objects that are stored, those of groups that are stored once counted once.
     pub objects: u64,
+    /// Shapes that emit light, those of groups counted as often as they are placed.
+    pub emitters: u64,
     /// Most rays that go on from one point.
     pub rays: u64,
     /// Most shadow rays from one point.
@@ -36,10 +39,12 @@ impl Needs {
     /// Of a scene whose files lie there.
     pub fn of(scene: &Description, files: Files<'_>) -> Self {
         // Too many objects are refused when they are to be placed.
-        let objects = count(scene).map_or(0, |counts| stored(scene, &counts));
+        let counts = count(scene).ok();
+        let objects = counts.as_ref().map_or(0, |counts| stored(scene, counts));
+        let emitters = counts.as_ref().map_or(0, |_| emitters(scene));
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.origin.map_or(0, |(sources, _)| sources.bytes_to_read());
-        let mut needs = Self { text, objects, shadows, ..Self::default() };
+        let mut needs = Self { text, objects, emitters, shadows, ..Self::default() };
         let pictures = pictures(scene, &files).into_iter();
         needs.pictures = pictures.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
         let panoramas = lighting::files(scene, &files).into_iter().filter(|(_, purpose)| *purpose == Purpose::Panorama);

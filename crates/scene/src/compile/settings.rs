@@ -43,12 +43,12 @@ pub fn check_lights(scene: &Description, lights: &[AnyLight], findings: &mut Vec
     // In an animation a light may be off for a while.
     let still = scene.animation.frames == 1;
     for (i, light) in lights.iter().enumerate() {
-        let path = Path::root().key("lights").index(i);
+        let path = || Path::root().key("lights").index(i);
         if let Err(invalid) = light.check() {
-            let path = path.key(crate::kind::name_of(light)).join(invalid.field);
+            let path = path().key(crate::kind::name_of(light)).join(invalid.field);
             findings.push(Finding::error(invalid.message).at(&path));
         } else if still && is_loaded(light) && light.power(1.0) == 0.0 && light.ambient().is_black() {
-            let warning = Finding::warning("this light gives no light").at(&path);
+            let warning = Finding::warning("this light gives no light").at(path());
             findings.push(warning.help("raise its `intensity` or `color`, or remove it"));
         }
     }

@@ -5,7 +5,7 @@
 
 use crate::description::Description;
 use schemars::generate::SchemaSettings;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::sync::LazyLock;
 
 mod numbers;
@@ -34,6 +34,7 @@ impl Schema {
     fn generate() -> Self {
         let settings = SchemaSettings::draft2020_12();
         let mut root = settings.into_generator().into_root_schema_for::<Description>().to_value();
+        allow_textures(&mut root);
         each_schema(&mut root, &mut close);
         tidy(&mut root);
         Self { root }
@@ -103,6 +104,17 @@ fn each_schema(schema: &mut Value, change: &mut impl FnMut(&mut Map<String, Valu
         }
     }
     change(members);
+}
+
+/// Where the name of a texture may stand, the texture itself may.
+fn allow_textures(root: &mut Value) {
+    let definitions = root.get_mut("$defs").and_then(Value::as_object_mut);
+    for (name, definition) in definitions.into_iter().flatten() {
+        let branches = definition.get_mut("anyOf").and_then(Value::as_array_mut);
+        if let Some(branches) = branches.filter(|_| crate::validate::definition_family(name) == "Input") {
+            branches.push(json!({"$ref": "#/$defs/AnyTexture", "description": "The texture itself."}));
+        }
+    }
 }
 
 /// No keys but those that are known.

@@ -2,7 +2,7 @@
 
 use super::names::Family;
 use super::rule::{Rule, Way};
-use super::{Walk, words};
+use super::{Walk, inline, words};
 use crate::document::{Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
@@ -30,7 +30,7 @@ impl Walk<'_> {
             },
             _ => {}
         }
-        self.value(node, at, way.rule.get())
+        if inline::is_texture(way) { self.texture(node, at, way) } else { self.value(node, at, way.rule.get()) }
     }
 }
 

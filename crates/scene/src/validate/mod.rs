@@ -13,6 +13,7 @@ use serde_json::Value;
 
 mod choice;
 mod family;
+mod inline;
 mod names;
 mod rule;
 mod scalar;
@@ -20,7 +21,7 @@ mod structure;
 mod words;
 
 pub use names::Family;
-pub(crate) use words::{list, noun as family_noun, plural};
+pub(crate) use words::{family as definition_family, list, noun as family_noun, plural};
 
 /// Most mistakes that are collected; a file of numbers where objects should be makes one for each.
 const MAX_FINDINGS: usize = 200;
@@ -36,14 +37,17 @@ pub struct Validated {
 
 /// Checks a scene whose expressions are resolved.
 pub fn validate(tree: &Node) -> Validated {
-    let mut walk = Walk { schema: Schema::get(), tree, findings: Vec::new() };
-    let json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
+    let mut walk = Walk { schema: Schema::get(), tree, findings: Vec::new(), textures: Vec::new() };
+    let mut json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
+    if let Some(Value::Object(scene)) = &mut json {
+        walk.add_textures(scene);
+    }
     Validated { json, findings: walk.findings }
 }
 
 /// Checks a value that stands at `at` against the definition of this name.
 pub(crate) fn part(node: &Node, definition: &str, at: &Trail<'_>) -> Validated {
-    let mut walk = Walk { schema: Schema::get(), tree: node, findings: Vec::new() };
+    let mut walk = Walk { schema: Schema::get(), tree: node, findings: Vec::new(), textures: Vec::new() };
     let json = Rule::named(definition).and_then(|rule| walk.value(node, at, rule));
     Validated { json, findings: walk.findings }
 }
@@ -53,6 +57,8 @@ struct Walk<'t> {
     /// The whole scene, where names are looked up.
     tree: &'t Node,
     findings: Vec<Finding>,
+    /// Textures that are written in place, by the names that they get.
+    textures: Vec<(String, Value)>,
 }
 
 impl Walk<'_> {

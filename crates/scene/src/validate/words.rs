@@ -64,6 +64,7 @@ fn alternatives(all: &Schema, branches: &[Value], owner: Option<&str>) -> String
         let text = branch.get("type").is_some_and(|t| t == "string");
         words.push(match (text, owner.map(family)) {
             (true, Some("Input")) => "the name of a texture".into(),
+            (false, Some("Input")) if all.follow(branch).0 == Some("AnyTexture") => "a texture {...}".into(),
             _ => expected(all, branch),
         });
     }

@@ -14,7 +14,7 @@
 use super::directions::{Directions, turn};
 use super::orientation::{Orientation, check_direction, in_range};
 use super::{Background, BackgroundSample, InvalidBackground};
-use juggler_math::{Image, Ray, Rgb, Vec2, Vec3, fun};
+use juggler_math::{Image, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -28,7 +28,7 @@ pub struct Environment {
     pub file: String,
     /// Factor on its light.
     #[serde(default = "one")]
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub scale: f32,
     /// How far it is turned about its vertical axis, counter-clockwise as seen from above.
     #[serde(default)]
@@ -172,7 +172,7 @@ impl Panorama {
 
 impl Background for Environment {
     fn check(&self) -> Result<(), InvalidBackground> {
-        in_range("scale", self.scale, 0.0, f32::MAX)?;
+        in_range("scale", self.scale, 0.0, MAX_LIGHT)?;
         in_range("rotation_degrees", self.rotation_degrees, -1e4, 1e4)?;
         check_direction("up", self.up)
     }
@@ -183,8 +183,7 @@ impl Background for Environment {
             let message = format!("the picture \"{}\" was not read", self.file);
             return Err(InvalidBackground { field: "file", message });
         };
-        let most = panorama.greatest;
-        in_range("scale", self.scale, 0.0, if most > 1.0 { f32::MAX / most } else { f32::MAX })?;
+        in_range("scale", self.scale, 0.0, MAX_LIGHT / panorama.greatest.max(1.0))?;
         self.orientation = Orientation::new(self.up, self.rotation_degrees);
         Ok(())
     }

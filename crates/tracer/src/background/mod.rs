@@ -1,6 +1,6 @@
 //! Backgrounds: what a ray sees that leaves the world, and light from there.
 
-use juggler_math::{Ray, Rgb, Vec2, Vec3, warp};
+use juggler_math::{MAX_LIGHT, Ray, Rgb, Vec2, Vec3, warp};
 
 mod atmosphere;
 mod bands;
@@ -104,10 +104,7 @@ impl AnyBackground {
     }
 }
 
-/// Refuses light that is negative or not finite.
+/// Refuses a color with a channel below 0 or above [`MAX_LIGHT`].
 fn check_color(field: &'static str, color: Rgb) -> Result<(), InvalidBackground> {
-    if color.to_array().iter().all(|v| *v >= 0.0 && v.is_finite()) {
-        return Ok(());
-    }
-    Err(InvalidBackground { field, message: format!("`{field}` must be 0 or more in every channel") })
+    color.to_array().iter().try_for_each(|channel| orientation::in_range(field, *channel, 0.0, MAX_LIGHT))
 }

@@ -1,7 +1,7 @@
 //! How a sky stands in the world: its top, and how far it is turned about it.
 
 use super::InvalidBackground;
-use juggler_math::{Vec3, fun};
+use juggler_math::{Vec3, fun, range};
 
 /// A rotation from a sky's own space, +Y its top, to the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,11 +60,8 @@ pub(super) fn check_direction(field: &'static str, direction: Vec3) -> Result<()
 
 /// Refuses a number outside `low..=high`, and what is no number.
 pub(super) fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidBackground> {
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    let range = if high == f32::MAX { format!("{low} or more") } else { format!("between {low} and {high}") };
-    Err(InvalidBackground { field, message: format!("`{field}` must be {range}, it is {value}") })
+    let wrong = range::outside(field, value, low, high);
+    wrong.map_or(Ok(()), |message| Err(InvalidBackground { field, message }))
 }
 
 #[cfg(test)]

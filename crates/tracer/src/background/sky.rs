@@ -16,7 +16,7 @@ use super::atmosphere::{Atmosphere, GROUND, haze_phase};
 use super::directions::{Directions, direction};
 use super::orientation::{Orientation, check_direction, in_range};
 use super::{Background, BackgroundSample, InvalidBackground};
-use juggler_math::{DVec3, Frame, Ray, Rgb, Vec2, Vec3, fun, warp};
+use juggler_math::{DVec3, Frame, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, fun, warp};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -52,7 +52,7 @@ pub struct Sky {
     /// Share of light that the ground reflects, from 0 to 1 in every channel; it also lights the sky.
     pub ground_albedo: Rgb,
     /// Factor on all light.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
     /// Whether the sun itself is there: its disk and its direct light.
     pub sun: bool,
@@ -249,7 +249,7 @@ impl Background for Sky {
         in_range("sun_azimuth_degrees", self.sun_azimuth_degrees, -1e4, 1e4)?;
         in_range("turbidity", self.turbidity, 1.0, 10.0)?;
         self.ground_albedo.to_array().iter().try_for_each(|v| in_range("ground_albedo", *v, 0.0, 1.0))?;
-        in_range("intensity", self.intensity, 0.0, 1e30)?;
+        in_range("intensity", self.intensity, 0.0, MAX_LIGHT)?;
         check_direction("sun_direction", self.sun_direction.unwrap_or(Vec3::Y))?;
         check_direction("up", self.up)
     }

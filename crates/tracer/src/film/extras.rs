@@ -1,7 +1,7 @@
 //! What a film keeps of its samples beside their radiance: colours, layer by layer, and how much of each pixel shows which
 //! thing. All of it is summed along the same tree as radiance, so that it too is the same however it was shared out.
 
-use juggler_math::Rgb;
+use juggler_math::{MAX_LIGHT, Rgb};
 
 /// Kinds of things of which is kept how much of each pixel shows them.
 pub const MASKS: usize = 3;
@@ -162,12 +162,13 @@ impl Extras {
         self.planes.len().is_multiple_of(pixels.max(1)) && self.masks.iter().all(|mask| mask.len() == pixels)
     }
 
-    /// Adds a sample to the sums of one pixel. What is no finite number counts as black.
+    /// Adds a sample to the sums of one pixel. A color with a channel that is NaN or infinite counts as black; channels
+    /// are limited to [`MAX_LIGHT`], so that the sums of all samples that there can be stay finite.
     pub(super) fn add(&mut self, planes: &[Rgb], mark: Option<&Mark>) {
         self.planes.resize(planes.len(), Rgb::BLACK);
         for (sum, plane) in self.planes.iter_mut().zip(planes) {
             if plane.is_finite() {
-                *sum += *plane;
+                *sum += plane.map(|channel| channel.clamp(-MAX_LIGHT, MAX_LIGHT));
             }
         }
         if let Some(mark) = mark {

@@ -22,6 +22,7 @@ pub use digest::{Digest, Summary};
 pub use extras::{Extras, InvalidMask, MASKS, Mark, Mask};
 pub use filter::{AnyFilter, Box, Filter, FilterSample, Gaussian, Juggler, Mitchell, Reconstruction, Table, Tent};
 pub use layout::{Layout, Rect, TILE};
+pub(crate) use sum::is_counted;
 pub use sum::{Accumulator, Samples, Sum, runs};
 pub use tile::{Run, Statistics, Tile, TileError};
 

@@ -12,6 +12,16 @@ pub(super) const MAX_RUNS: usize = 64;
 /// What a difference counts one join further down. Joins double a level, so each level counts half of the one above.
 const DEEPER: f64 = 0.25;
 
+/// Largest channel of a sample that is counted: the `f32` sum of a block of such samples is finite.
+const MAX_SAMPLE: f32 = 1e36;
+
+/// Whether a sample counts: a sample with a channel that is NaN, infinite or beyond 10^36 counts as black, so that no sum
+/// of a film is ever infinite or NaN.
+#[inline]
+pub(crate) fn is_counted(sample: Rgb) -> bool {
+    sample.to_array().iter().all(|channel| channel.abs() <= MAX_SAMPLE)
+}
+
 /// What is known of one pixel's samples of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {
@@ -34,15 +44,21 @@ impl Sum {
     #[must_use]
     pub fn joined(&self, next: &Self, blocks: [u32; 2]) -> Self {
         let [a, b] = blocks.map(f64::from);
-        let mut sum = Self { clamped: self.clamped + next.clamped, ..Self::default() };
+        let clamped = limited(self.clamped + next.clamped);
+        let mut sum = Self { clamped, ..Self::default() };
         for i in 0..3 {
             sum.total[i] = self.total[i] + next.total[i];
             let apart = next.total[i] / b.max(1.0) - self.total[i] / a.max(1.0);
             let between = apart * apart * (a * b / (a + b).max(1.0));
-            sum.spread[i] = (self.spread[i] + next.spread[i]) * DEEPER as f32 + between as f32;
+            sum.spread[i] = limited((self.spread[i] + next.spread[i]) * DEEPER as f32 + between as f32);
         }
         sum
     }
+}
+
+/// The number, or the largest finite one of its sign.
+fn limited(number: f32) -> f32 {
+    number.clamp(f32::MIN, f32::MAX)
 }
 
 /// By what a run's spread must be divided to give the variance of a block, if all blocks were independent.
@@ -148,7 +164,8 @@ impl Accumulator {
         self.add_samples(Samples { radiance, ..Samples::default() })
     }
 
-    /// Adds the next samples. One that is no finite number counts as black. Returns how many were not.
+    /// Adds the next samples. A sample with a channel that is NaN, infinite or beyond 10^36 counts as
+    /// black. Returns the number of such samples.
     #[inline]
     pub fn add_samples(&mut self, mut samples: Samples) -> u64 {
         let mut lost = 0;
@@ -156,8 +173,8 @@ impl Accumulator {
             let room = (BLOCK - self.next % BLOCK) as usize;
             let (now, rest) = samples.split_at(room);
             lost += self.add_to_block(now.radiance);
-            let taken = now.radiance.iter().zip(now.clamped).filter(|(sample, _)| sample.is_finite());
-            self.clamped = taken.fold(self.clamped, |sum, (_, taken)| sum + taken);
+            let taken = now.radiance.iter().zip(now.clamped).filter(|(sample, _)| is_counted(**sample));
+            self.clamped = taken.fold(self.clamped, |sum, (_, taken)| limited(sum + taken));
             now.extras().for_each(|(planes, mark)| self.extra.add(planes, mark));
             self.next = self.next.wrapping_add(now.len() as u32);
             if now.len() == room {
@@ -170,15 +187,15 @@ impl Accumulator {
 
     #[inline]
     fn add_to_block(&mut self, samples: &[Rgb]) -> u64 {
-        let sum = samples.iter().fold(self.block, |sum, sample| sum + *sample);
-        if sum.is_finite() {
-            self.block = sum;
-            return 0;
+        let mut lost = 0;
+        for sample in samples {
+            if is_counted(*sample) {
+                self.block += *sample;
+            } else {
+                lost += 1;
+            }
         }
-        // Rarely: one of them spoils the sum.
-        let (finite, lost): (Vec<Rgb>, Vec<Rgb>) = samples.iter().partition(|sample| sample.is_finite());
-        self.block = finite.iter().fold(self.block, |sum, sample| sum + *sample);
-        lost.len() as u64
+        lost
     }
 
     fn block_sum(&self) -> Sum {

@@ -163,3 +163,27 @@ fn tiles_cover_a_region_once() {
     let huge = Layout::new(Rect { x: u32::MAX - 5, y: 0, width: u32::MAX, height: u32::MAX });
     assert!(huge.tile(huge.tiles() - 1).is_some() || huge.tiles() > 0, "no overflow");
 }
+
+#[test]
+fn a_film_is_finite_whatever_its_samples_are() {
+    let sizes = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.4e38, -3e38, 1e36, -1e36, 9e35, 1.0];
+    let samples: Vec<Rgb> = (0..64 * BLOCK as usize).map(|i| Rgb::new(0.5, sizes[i * 7 % 9], -sizes[i % 9])).collect();
+    let expected = samples.iter().filter(|sample| !sample.to_array().iter().all(|v| v.abs() <= 1e36)).count() as u64;
+    for chunk in [1, 5, 16, 1024] {
+        let mut accumulator = Accumulator::default();
+        accumulator.begin(0, None);
+        let add = |planes: &[Rgb], accumulator: &mut Accumulator| {
+            let clamped: Vec<f32> = planes.iter().map(|_| 3e38).collect();
+            accumulator.add_samples(Samples { radiance: planes, clamped: &clamped, planes, marks: &[] })
+        };
+        let lost: u64 = samples.chunks(chunk).map(|samples| add(samples, &mut accumulator)).sum();
+        assert_eq!(lost, expected, "in pieces of {chunk}");
+        for sum in accumulator.sums() {
+            assert!(sum.total.iter().all(|total| total.is_finite()), "{sum:?}");
+            assert!(sum.spread.iter().all(|spread| spread.is_finite() && *spread > 0.0), "{sum:?}");
+            assert_eq!(sum.clamped, f32::MAX);
+        }
+        let finite = |extras: &Extras| extras.planes.iter().all(|plane| plane.is_finite());
+        assert!(accumulator.extras().all(|extras| finite(&extras)));
+    }
+}

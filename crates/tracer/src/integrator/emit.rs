@@ -56,6 +56,13 @@ pub(crate) struct ShadowQueue {
     pub gains: Vec<Gain>,
 }
 
+impl ShadowQueue {
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        self.gains.clear();
+    }
+}
+
 /// What a shadow ray adds when it comes through.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gain {

@@ -24,7 +24,7 @@ mod trail;
 pub(crate) use clamp::Clamping;
 pub use clamp::{Clamp, Way};
 pub use cone::Cone;
-pub(crate) use emit::{Bent, Harvest, Queue};
+pub(crate) use emit::{Bent, Harvest, Queue, ShadowQueue};
 pub use emit::{Emit, PathState};
 pub(crate) use path_log::{Arrival, PathLog, Seen};
 pub use path_log::{Event, Scattering};

@@ -16,7 +16,7 @@ pub struct Ambient {
     /// Its colour.
     pub color: Rgb,
     /// Factor on the colour.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
 }
 

@@ -21,7 +21,7 @@ pub struct Directional {
     /// Its colour.
     pub color: Rgb,
     /// Factor on the colour.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
     /// Under which angle its disk is seen, from rim to rim, for soft shadows: 0.53 for the sun;
     /// 0, as without it, for hard shadows.

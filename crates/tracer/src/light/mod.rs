@@ -1,7 +1,7 @@
 //! Lights: what arrives at a point, and from where.
 
 use crate::emitter::LightBounds;
-use juggler_math::{Rgb, Vec2, Vec3};
+use juggler_math::{MAX_LIGHT, Rgb, Vec2, Vec3, range};
 
 mod ambient;
 mod directional;
@@ -103,20 +103,18 @@ impl AnyLight {
 
 /// Refuses a number outside `low..=high`, and what is no number.
 fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidLight> {
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    let range = if high == f32::MAX { format!("{low} or more") } else { format!("between {low} and {high}") };
-    Err(InvalidLight { field, message: format!("`{field}` must be {range}, it is {value}") })
+    let wrong = range::outside(field, value, low, high);
+    wrong.map_or(Ok(()), |message| Err(InvalidLight { field, message }))
 }
 
 fn check_color(color: Rgb, intensity: f32) -> Result<(), InvalidLight> {
-    color.to_array().iter().try_for_each(|v| in_range("color", *v, 0.0, f32::MAX))?;
-    in_range("intensity", intensity, 0.0, f32::MAX)?;
-    if (color * intensity).is_finite() {
+    color.to_array().iter().try_for_each(|channel| in_range("color", *channel, 0.0, MAX_LIGHT))?;
+    in_range("intensity", intensity, 0.0, MAX_LIGHT)?;
+    if (color * intensity).max_channel() <= MAX_LIGHT {
         return Ok(());
     }
-    Err(InvalidLight { field: "intensity", message: "`color` times `intensity` is too large a number".into() })
+    let message = format!("`color` times `intensity` must not exceed {MAX_LIGHT:e} in any channel");
+    Err(InvalidLight { field: "intensity", message })
 }
 
 fn check_position(position: Vec3) -> Result<(), InvalidLight> {

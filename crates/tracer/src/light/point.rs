@@ -24,7 +24,7 @@ pub struct Point {
     /// Its colour.
     pub color: Rgb,
     /// Factor on the colour: what arrives at distance 1 with the default attenuation.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub intensity: f32,
     /// How its light falls off with distance.
     pub attenuation: Attenuation,

@@ -4,10 +4,10 @@
 //! {"emissive": {"radiance": [17, 12, 4], "sides": "front"}}
 //! ```
 
-use super::input::{check_color, light};
+use super::input::{check_light, light};
 use super::{Compiled, Material, MaterialError, MaterialId, MaterialRef, Resolver, View};
 use crate::texture::{Input, Slot, TextureTable};
-use juggler_math::Rgb;
+use juggler_math::{MAX_LIGHT, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub struct Emissive {
     /// Radiance given off.
     pub radiance: Input<Rgb>,
     /// Factor on the radiance.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub scale: f32,
     /// From which sides it shines.
     pub sides: Sides,
@@ -60,8 +60,7 @@ impl Material for Emissive {
     }
 
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
-        check_color("radiance", &self.radiance, f32::MAX)?;
-        super::error::in_range("scale", self.scale, 0.0, f32::MAX)?;
+        check_light("radiance", &self.radiance, "scale", self.scale)?;
         let radiance = resolver.textures().resolve("radiance", &self.radiance)?;
         let material = match &self.material {
             Some(material) => resolver.material("material", material)?,
@@ -86,7 +85,7 @@ impl CompiledEmissive {
             Slot::Value(radiance) => *radiance,
             slot => light(textures, slot, &view.lookup()),
         };
-        radiance * self.scale
+        (radiance * self.scale).map(|channel| channel.min(MAX_LIGHT))
     }
 
     /// How it shines as a whole.

@@ -1,6 +1,7 @@
 //! What can be wrong with a material, and where.
 
 use crate::texture::UnknownTexture;
+use juggler_math::range;
 
 /// Why a material cannot be compiled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,15 +78,6 @@ impl MaterialError {
 
 /// Refuses a number outside `low..=high`, and what is no number.
 pub(super) fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), MaterialError> {
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    let range = if low == f32::MIN_POSITIVE {
-        "above 0".to_owned()
-    } else if high == f32::MAX {
-        format!("{low} or more")
-    } else {
-        format!("between {low} and {high}")
-    };
-    Err(MaterialError::Invalid { field, message: format!("`{field}` must be {range}, it is {value}") })
+    let wrong = range::outside(field, value, low, high);
+    wrong.map_or(Ok(()), |message| Err(MaterialError::Invalid { field, message }))
 }

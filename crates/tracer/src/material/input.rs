@@ -3,7 +3,7 @@
 use super::MaterialError;
 use super::error::in_range;
 use crate::texture::{Input, Lookup, Slot, TextureTable};
-use juggler_math::Rgb;
+use juggler_math::{MAX_LIGHT, Rgb};
 
 /// Refuses a written colour with a channel outside 0 to 1.
 pub fn check_share(field: &'static str, input: &Input<Rgb>) -> Result<(), MaterialError> {
@@ -14,6 +14,24 @@ pub fn check_share(field: &'static str, input: &Input<Rgb>) -> Result<(), Materi
 pub fn check_color(field: &'static str, input: &Input<Rgb>, most: f32) -> Result<(), MaterialError> {
     let Input::Value(color) = input else { return Ok(()) };
     color.to_array().iter().try_for_each(|channel| in_range(field, *channel, 0.0, most))
+}
+
+/// Refuses light whose color, factor, or product of both has a channel below 0 or above [`MAX_LIGHT`].
+pub fn check_light(
+    field: &'static str,
+    color: &Input<Rgb>,
+    factor_field: &'static str,
+    factor: f32,
+) -> Result<(), MaterialError> {
+    check_color(field, color, MAX_LIGHT)?;
+    in_range(factor_field, factor, 0.0, MAX_LIGHT)?;
+    match color {
+        Input::Value(color) if (*color * factor).max_channel() > MAX_LIGHT => {
+            let message = format!("`{field}` times `{factor_field}` must not exceed {MAX_LIGHT:e} in any channel");
+            Err(MaterialError::Invalid { field: factor_field, message })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a written number outside `low` to `high`.

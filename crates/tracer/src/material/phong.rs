@@ -19,7 +19,7 @@ use super::error::in_range;
 use super::{Compiled, Glow, Material, MaterialError, Resolver, Sides};
 use crate::bsdf::{Cone, Highlight, Phong as PhongLobe};
 use crate::texture::{Input, Lookup, Slot, TextureTable};
-use juggler_math::Rgb;
+use juggler_math::{MAX_LIGHT, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -38,7 +38,7 @@ pub struct Phong {
     /// Colour of ambient and diffuse light.
     pub diffuse: Input<Rgb>,
     /// Weight of diffuse light.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub diffuse_weight: f32,
     /// A further factor on diffuse light.
     pub diffuse_normalization: DiffuseNormalization,
@@ -183,7 +183,7 @@ impl Material for Phong {
 impl Phong {
     fn check(&self) -> Result<(), MaterialError> {
         in_range("occlusion", self.occlusion, 0.0, 1.0)?;
-        in_range("diffuse_weight", self.diffuse_weight, 0.0, f32::MAX)?;
+        in_range("diffuse_weight", self.diffuse_weight, 0.0, MAX_LIGHT)?;
         in_range("shininess", self.shininess, 0.0, f32::MAX)?;
         in_range("ior", self.ior, 0.01, 100.0)?;
         in_range("glossy.half_angle_degrees", self.glossy.half_angle_degrees, 0.0, 90.0)?;
@@ -191,7 +191,7 @@ impl Phong {
         in_range("blurry.half_angle_degrees", self.blurry.half_angle_degrees, 0.0, 90.0)?;
         in_range("blurry.rays", self.blurry.rays as f32, 1.0, 10_000.0)?;
         if let Input::Value(specular) = self.specular {
-            in_range("specular", specular, 0.0, f32::MAX)?;
+            in_range("specular", specular, 0.0, MAX_LIGHT)?;
         }
         let colors = [
             ("emission", &self.emission),
@@ -203,7 +203,7 @@ impl Phong {
         ];
         for (field, input) in colors {
             if let Input::Value(color) = input {
-                color.to_array().iter().try_for_each(|v| in_range(field, *v, 0.0, f32::MAX))?;
+                color.to_array().iter().try_for_each(|v| in_range(field, *v, 0.0, MAX_LIGHT))?;
             }
         }
         Ok(())

@@ -10,14 +10,14 @@
 
 use super::emissive::{CompiledEmissive, Sides};
 use super::error::in_range;
-use super::input::{check_color, check_number, check_share, fraction, light, share};
+use super::input::{check_color, check_light, check_number, check_share, fraction, light, share};
 use super::mask::CompiledMask;
 use super::roughness::{rotation_slot, turns};
 use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
 use crate::bsdf::{Bsdf, Principled as PrincipledLobes};
 use crate::medium::{Interior, Medium};
 use crate::texture::{Input, Lookup, Slot, TextureTable};
-use juggler_math::Rgb;
+use juggler_math::{MAX_LIGHT, Rgb};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -76,7 +76,7 @@ pub struct Principled {
     /// Radiance given off to both sides.
     pub emissive: Input<Rgb>,
     /// Factor on that.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub emissive_strength: f32,
     /// Share of light that meets the surface, 0 to 1; the rest passes as if nothing were there.
     pub opacity: Input<f32>,
@@ -189,11 +189,10 @@ impl Principled {
         for (field, input) in self.numbers() {
             check_number(field, input, 0.0, 1.0)?;
         }
-        check_color("specular_color", &self.specular_color, f32::MAX)?;
+        check_color("specular_color", &self.specular_color, MAX_LIGHT)?;
         check_number("iridescence_thickness", &self.iridescence_thickness, 0.0, THICKEST_FILM)?;
         check_number("opacity", &self.opacity, 0.0, 1.0)?;
-        check_color("emissive", &self.emissive, f32::MAX)?;
-        in_range("emissive_strength", self.emissive_strength, 0.0, f32::MAX)?;
+        check_light("emissive", &self.emissive, "emissive_strength", self.emissive_strength)?;
         in_range("alpha_cutoff", self.alpha_cutoff.unwrap_or_default(), 0.0, 1.0)?;
         in_range("ior", self.ior, 1.0, 10.0)?;
         in_range("clearcoat_ior", self.clearcoat_ior, 1.0, 10.0)?;

@@ -1,6 +1,6 @@
 //! What fills a solid: glass that colours light, fog that scatters it.
 
-use juggler_math::{Rgb, fun};
+use juggler_math::{Rgb, fun, range};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +37,7 @@ pub struct Medium {
     /// `absorption`.
     pub color: Rgb,
     /// The way on which white light becomes `color`, scene units.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(range(min = 1e-12))]
     pub distance: f32,
 }
 
@@ -51,27 +51,26 @@ impl Default for Medium {
 /// The least share of light that a `color` leaves: black would need an infinite coefficient.
 const LEAST_COLOR: f32 = 1e-6;
 
+/// Largest coefficient of absorption and of scattering, per scene unit.
+const MOST_COEFFICIENT: f32 = 1e12;
+/// Smallest `distance`, scene units.
+const LEAST_DISTANCE: f32 = 1e-12;
+
 impl Medium {
-    /// The field at fault and what it should be.
+    /// Checks all numbers. The error is the field at fault and the message about it.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
-        let coefficient = |v: f32| (0.0..=1e12).contains(&v);
-        let refuse = |field, message: &str| Err((field, format!("`{field}` must be {message}")));
-        if !self.absorption.to_array().into_iter().all(coefficient) {
-            return refuse("absorption", "0 or more in every channel");
-        }
-        if !self.scattering.to_array().into_iter().all(coefficient) {
-            return refuse("scattering", "0 or more in every channel");
-        }
-        if !(-0.999..=0.999).contains(&self.anisotropy) {
-            return refuse("anisotropy", "between -0.999 and 0.999");
-        }
-        if !self.color.to_array().into_iter().all(|v| (0.0..=1.0).contains(&v)) {
-            return refuse("color", "between 0 and 1 in every channel");
-        }
-        if !(self.distance >= 1e-12 && self.distance <= f32::MAX) {
-            return refuse("distance", "above 0");
-        }
-        Ok(())
+        let number = |field, value, low, high| {
+            let wrong = range::outside(field, value, low, high);
+            wrong.map_or(Ok(()), |message| Err((field, message)))
+        };
+        let channels = |field, color: Rgb, most| {
+            color.to_array().into_iter().try_for_each(|channel| number(field, channel, 0.0, most))
+        };
+        channels("absorption", self.absorption, MOST_COEFFICIENT)?;
+        channels("scattering", self.scattering, MOST_COEFFICIENT)?;
+        number("anisotropy", self.anisotropy, -0.999, 0.999)?;
+        channels("color", self.color, 1.0)?;
+        number("distance", self.distance, LEAST_DISTANCE, f32::MAX)
     }
 
     /// With `color` and `distance` taken into the absorption.

@@ -1,7 +1,7 @@
 //! The film under one piece of work: the samples of a pixel come one after the other, and pixel after pixel.
 
 use super::Work;
-use crate::film::{Accumulator, Run, Samples, Tile, runs};
+use crate::film::{Accumulator, Run, Samples, Tile, is_counted, runs};
 use crate::layer::{Layer, Layers, is_half};
 use juggler_math::Rgb;
 
@@ -65,7 +65,7 @@ impl<'w> Exposed<'w> {
     }
 
     fn add_to_pixel(&mut self, samples: Samples) -> u64 {
-        let is_lost = |radiance: &Rgb| !radiance.is_finite();
+        let is_lost = |radiance: &Rgb| !is_counted(*radiance);
         let is_cut = |taken: &f32| *taken != 0.0;
         let is_any = samples.radiance.iter().any(is_lost) || samples.clamped.iter().any(is_cut);
         let counted = self.coverage.filter(|_| is_any);

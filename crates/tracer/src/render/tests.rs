@@ -17,6 +17,7 @@ use juggler_math::{Motion, Ray, Rgb, Transform, UVec2, Vec3};
 use serde::de::DeserializeOwned;
 
 mod blur;
+mod cancelling;
 mod clamping;
 mod cones;
 mod holes;

@@ -9,8 +9,8 @@
 use super::expose::{Start, expose, start};
 use super::exposed::Exposed;
 use super::{Control, Job, Rays, Stopped, Work};
-use crate::film::{Clamped, Rect, Samples, Tile};
-use crate::integrator::{Bent, Clamping, Emit, Harvest, PathState, Queue, Record, Way};
+use crate::film::{Clamped, Rect, Samples, Tile, is_counted};
+use crate::integrator::{Bent, Clamping, Emit, Harvest, PathState, Queue, Record, ShadowQueue, Way};
 use crate::world::{Shadows, Vertex, WorldHit};
 use juggler_math::{Ray, Rgb};
 use std::ops::Range;
@@ -76,9 +76,9 @@ impl<'j> Engine<'j> {
         let mut means = Vec::with_capacity(pixels.area() as usize);
         let mut taken = Clamped::default();
         self.passes(&Work::first(pixels, 1), control, |Samples { radiance, clamped, .. }| {
-            let lost = radiance.iter().filter(|sample| !sample.is_finite()).count() as u64;
-            means.extend(radiance.iter().map(|sample| if sample.is_finite() { *sample } else { Rgb::BLACK }));
-            let finite = radiance.iter().zip(clamped).filter(|(sample, _)| sample.is_finite());
+            let lost = radiance.iter().filter(|sample| !is_counted(**sample)).count() as u64;
+            means.extend(radiance.iter().map(|sample| if is_counted(*sample) { *sample } else { Rgb::BLACK }));
+            let finite = radiance.iter().zip(clamped).filter(|(sample, _)| is_counted(**sample));
             finite.for_each(|(_, clamped)| taken.add(f64::from(*clamped)));
             lost
         })?;
@@ -91,12 +91,9 @@ impl<'j> Engine<'j> {
         let end = work.pixels.area() * samples;
         let mut first = 0;
         while first < end {
-            if control.is_cancelled() {
-                return Err(Stopped);
-            }
             let slots = first..end.min(first + PASS);
             let count = slots.end - slots.start;
-            self.pass(work, samples, slots);
+            self.pass(work, samples, slots, control)?;
             self.rays.not_finite += take(self.harvest.samples());
             self.rays.camera += count;
             control.add(count, &std::mem::take(&mut self.rays));
@@ -105,8 +102,9 @@ impl<'j> Engine<'j> {
         Ok(())
     }
 
-    /// Traces the samples `slots` to their ends.
-    fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>) {
+    /// Traces the samples `slots` to their ends. One vertex may cost seconds, so every vertex and every queue of shadow rays
+    /// looks whether the render was cancelled.
+    fn pass(&mut self, work: &Work, samples: u64, slots: Range<u64>, control: &Control) -> Result<(), Stopped> {
         self.harvest.reset((slots.end - slots.start) as usize, self.job.world.lamps().len());
         let mut camera = self.spare.pop().unwrap_or_default();
         expose(self.job, &self.start, work, samples, slots, &mut camera);
@@ -119,15 +117,30 @@ impl<'j> Engine<'j> {
         }
         self.stack.push(camera);
         while let Some(queue) = self.stack.pop() {
-            self.segment(queue);
+            if control.is_cancelled() {
+                return Err(self.stopped());
+            }
+            self.segment(queue, control);
         }
+        if control.is_cancelled() { Err(self.stopped()) } else { Ok(()) }
+    }
+
+    /// Drops all rays in flight, for the next work to begin anew.
+    fn stopped(&mut self) -> Stopped {
+        let Harvest { shadows, bent, pending, next, .. } = &mut self.harvest;
+        self.stack.clear();
+        next.clear();
+        bent.clear();
+        *pending = 0;
+        shadows.iter_mut().for_each(ShadowQueue::clear);
+        Stopped
     }
 
     /// Takes a queue one step further and stacks what comes of it, so that the first of it is next.
-    fn segment(&mut self, mut queue: Queue) {
+    fn segment(&mut self, mut queue: Queue, control: &Control) {
         self.nearest(&mut queue);
-        let done = self.shade(&queue);
-        self.shadows();
+        let done = self.shade(&queue, control);
+        self.shadows(control);
         self.stack_rest(&queue, done);
         self.stack_next();
         queue.clear();
@@ -146,9 +159,12 @@ impl<'j> Engine<'j> {
     }
 
     /// Hands each vertex to the integrator; stops between slots when too many rays wait. Returns how many
-    /// rays were done.
-    fn shade(&mut self, queue: &Queue) -> usize {
+    /// rays were done, fewer than there are when the render was cancelled.
+    fn shade(&mut self, queue: &Queue, control: &Control) -> usize {
         for (i, ((ray, path), hit)) in queue.rays.iter().zip(&queue.paths).zip(&self.hits).enumerate() {
+            if control.is_cancelled() {
+                return i;
+            }
             meet(self.job, self.measures, &mut self.harvest, ray, path, hit);
             let last_of_slot = queue.paths.get(i + 1).is_none_or(|next| next.slot != path.slot);
             if last_of_slot && self.harvest.next.len() + self.harvest.pending > WAITING {
@@ -159,12 +175,12 @@ impl<'j> Engine<'j> {
     }
 
     /// Answers the shadow rays, light by light, and adds what comes through.
-    fn shadows(&mut self) {
+    fn shadows(&mut self, control: &Control) {
         let Harvest { radiance, clamping, record, shadows, pending, .. } = &mut self.harvest;
         *pending = 0;
         let last = shadows.len().saturating_sub(1);
         let kept = self.job.integrator.shadows();
-        for (number, queue) in shadows.iter_mut().enumerate() {
+        for (number, queue) in shadows.iter_mut().enumerate().take_while(|_| !control.is_cancelled()) {
             self.rays.shadow += queue.rays.len() as u64;
             self.through.resize(queue.rays.len(), Rgb::BLACK);
             let (rays, through) = (&queue.rays, &mut self.through);
@@ -186,8 +202,7 @@ impl<'j> Engine<'j> {
                 }
                 radiance[slot] += more;
             }
-            queue.rays.clear();
-            queue.gains.clear();
+            queue.clear();
         }
         self.bent();
     }

@@ -1,7 +1,7 @@
 //! Checks of descriptions: every number finite and of a size whose square still fits a float.
 
 use super::InvalidShape;
-use juggler_math::Vec3;
+use juggler_math::{Vec3, range};
 
 /// The greatest length or coordinate; its reciprocal is the smallest radius or edge.
 pub const MAX_LENGTH: f32 = 1e18;
@@ -9,6 +9,11 @@ pub const MAX_LENGTH: f32 = 1e18;
 /// An error that names its field.
 pub fn invalid(field: impl Into<String>, message: impl Into<String>) -> InvalidShape {
     InvalidShape { field: field.into(), message: message.into() }
+}
+
+/// A number within a range.
+pub fn number(field: &str, value: f32, low: f32, high: f32) -> Result<(), InvalidShape> {
+    range::outside(field, value, low, high).map_or(Ok(()), |message| Err(invalid(field, message)))
 }
 
 /// A coordinate or signed length.

@@ -7,7 +7,7 @@
 use super::lattice::{hash, kept, pulses};
 use super::mapping::{Map, Place};
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Slot, Texture, TextureError, TextureTable, check,
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
 };
 use juggler_math::hash::unit_f32;
 use juggler_math::{Rgb, fun};
@@ -74,7 +74,7 @@ impl Texture for Brick {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let (brick, mortar) = (resolver.color("brick", &self.brick)?, resolver.color("mortar", &self.mortar)?);
         let Self { width, height, mortar_width, shift, variation, seed, .. } = *self;
-        let map = self.mapping.compile();
+        let map = self.mapping.compile(Space::Uv);
         Ok(Compiled::Brick(CompiledBrick { brick, mortar, width, height, mortar_width, shift, variation, seed, map }))
     }
 }

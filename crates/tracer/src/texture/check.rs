@@ -1,17 +1,15 @@
 //! What numbers of a texture must keep.
 
 use super::{Input, InvalidTexture};
-use juggler_math::{Rgb, Vec3};
+use juggler_math::{Rgb, Vec3, range};
 
 /// The largest channel of a colour: far beyond any light, and mixing two cannot overflow.
 const LARGEST: f32 = 1e37;
 
 /// Refuses a number outside `low..=high`, and what is no number.
 pub fn in_range(field: &str, value: f32, low: f32, high: f32) -> Result<(), InvalidTexture> {
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    Err(InvalidTexture::new(field, format!("`{field}` must be between {low} and {high}, it is {value}")))
+    let wrong = range::outside(field, value, low, high);
+    wrong.map_or(Ok(()), |message| Err(InvalidTexture::new(field, message)))
 }
 
 /// Refuses a colour too large to be mixed; one that comes from a texture is checked there.

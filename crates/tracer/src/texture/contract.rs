@@ -125,3 +125,32 @@ fn tables_look_names_up() {
     let error = table.resolve::<Rgb>("diffuse", &Input::Texture("t9".into())).unwrap_err();
     assert_eq!((error.field, error.name.as_str()), ("diffuse", "t9"));
 }
+
+#[test]
+fn solid_patterns_lie_in_object_space_unless_the_scene_says_otherwise() {
+    let mut random = Random::new(75);
+    let mut lookup = || {
+        let uv = random.point(1.0).truncate();
+        Lookup { uv, local: random.point(9.0), world: random.point(9.0), ..Lookup::default() }
+    };
+    let places: Vec<Lookup> = (0..50).map(|_| lookup()).collect();
+    let colors = |kind: &str, settings: &str| -> Vec<Rgb> {
+        let read = reader(&format!(r#"{{"{kind}": {{{settings}}}}}"#));
+        places.iter().map(read).collect()
+    };
+    for (kind, solid) in [
+        ("noise", true),
+        ("fbm", true),
+        ("turbulence", true),
+        ("marble", true),
+        ("wood", true),
+        ("voronoi", true),
+        ("brick", false),
+        ("dots", false),
+        ("wave", false),
+    ] {
+        let [uv, local] = ["uv", "local"].map(|space| colors(kind, &format!(r#""space": "{space}""#)));
+        assert_ne!(uv, local, "{kind}");
+        assert_eq!(colors(kind, ""), if solid { local } else { uv }, "{kind}");
+    }
+}

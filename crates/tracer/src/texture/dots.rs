@@ -66,9 +66,17 @@ impl Texture for Dots {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("ground", &self.ground)?, high: resolver.color("dot", &self.dot)? };
         let Self { radius, softness, jitter, seed, .. } = *self;
-        let flat = self.mapping.space == Space::Uv;
-        let mut compiled =
-            CompiledDots { colors, radius, softness, jitter, seed, flat, mean: 0.0, map: self.mapping.compile() };
+        let flat = self.mapping.space_or(Space::Uv) == Space::Uv;
+        let mut compiled = CompiledDots {
+            colors,
+            radius,
+            softness,
+            jitter,
+            seed,
+            flat,
+            mean: 0.0,
+            map: self.mapping.compile(Space::Uv),
+        };
         // Shells of a dot, by their areas.
         let shell = |i: u32| {
             let r = (i as f32 + 0.5) / 64.0 * radius;

@@ -3,7 +3,7 @@
 
 use super::compiled::Pair;
 use super::mapping::{Map, Place};
-use super::{Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, TextureError, TextureTable, check};
+use super::{Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, TextureError, TextureTable, check};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ impl Heights {
     /// With names looked up.
     pub(super) fn compile(&self, resolver: &mut Resolver<'_>) -> Result<CompiledHeights, TextureError> {
         let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
-        Ok(CompiledHeights { colors, octaves: self.octaves, map: self.mapping.compile() })
+        Ok(CompiledHeights { colors, octaves: self.octaves, map: self.mapping.compile(Space::Local) })
     }
 }
 

@@ -9,7 +9,7 @@
 
 use super::mapping::Map;
 use super::pixels::{Filter, Pyramid, Wrap};
-use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Texture, TextureError, check};
+use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, check};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -116,7 +116,7 @@ impl Texture for Image {
             factor: self.factor,
             wrap: [self.wrap, self.wrap_v.unwrap_or(self.wrap)],
             filter: self.filter,
-            map: self.mapping.compile(),
+            map: self.mapping.compile(Space::Uv),
         }))
     }
 }

@@ -9,8 +9,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mapping {
-    /// The coordinates that the pattern lives in.
-    pub space: Space,
+    /// Coordinates in which the pattern lies. Solid patterns (`noise`, `fbm`, `turbulence`, `marble`, `wood`, `voronoi`,
+    /// `triplanar`) lie in object space by default, all others in surface coordinates (u, v).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub space: Option<Space>,
     /// How many units of the pattern fit in one unit of `space`: 2 makes it twice as fine. One number, or one for each
     /// axis of the pattern.
     pub scale: Scale,
@@ -41,7 +43,7 @@ impl Default for Scale {
 impl Mapping {
     /// Of a pattern in that space, all else as it is.
     pub fn of(space: Space) -> Self {
-        Self { space, ..Self::default() }
+        Self { space: Some(space), ..Self::default() }
     }
 
     /// Checks numbers.
@@ -61,8 +63,13 @@ impl Mapping {
         }
     }
 
-    /// As lookups use it.
-    pub(super) fn compile(&self) -> Map {
+    /// The coordinates in which the pattern lies; `default` where the scene does not say.
+    pub(super) fn space_or(&self, default: Space) -> Space {
+        self.space.unwrap_or(default)
+    }
+
+    /// The mapping as lookups use it, in the space `default` where the scene does not say.
+    pub(super) fn compile(&self, default: Space) -> Map {
         let [x, y, z] = self.rotate_degrees.map(|degrees| fun::sin_cos_turns(degrees / 360.0));
         // Where the pattern's axes point.
         let turn = |v: Vec3| {
@@ -72,7 +79,7 @@ impl Mapping {
         };
         let factors = self.factors();
         Map {
-            space: self.space,
+            space: self.space_or(default),
             rows: [turn(Vec3::X) * factors.x, turn(Vec3::Y) * factors.y, turn(Vec3::Z) * factors.z],
             offset: self.offset,
             growth: factors.abs().max_element(),
@@ -144,7 +151,7 @@ mod tests {
     fn map(json: &str) -> Map {
         let mapping: Mapping = serde_json::from_str(json).unwrap();
         mapping.check().unwrap();
-        mapping.compile()
+        mapping.compile(Space::Uv)
     }
 
     #[test]
@@ -173,8 +180,8 @@ mod tests {
             uv_footprint: f32::INFINITY,
             ..Lookup::default()
         };
-        let place =
-            |space| Mapping { space, scale: Scale::Each([1.0, -4.0, 2.0]), ..Mapping::default() }.compile().place(&at);
+        let scaled = Mapping { scale: Scale::Each([1.0, -4.0, 2.0]), ..Mapping::default() };
+        let place = |space| scaled.compile(space).place(&at);
         assert_eq!(place(Space::World), Place { point: Vec3::new(2.0, -8.0, 4.0), width: 2.0 });
         assert_eq!(place(Space::Uv), Place::default());
         assert_eq!(place(Space::Local), Place::default());

@@ -10,7 +10,8 @@ use super::compiled::Pair;
 use super::lattice::kept;
 use super::mapping::Map;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Texture, TextureError, TextureTable, check,
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
+    check,
 };
 use juggler_math::{Rgb, fun};
 use schemars::JsonSchema;
@@ -65,7 +66,7 @@ impl Texture for Marble {
         let colors = Pair { low: resolver.color("stone", &self.stone)?, high: resolver.color("vein", &self.vein)? };
         let Self { distortion, sharpness, octaves, .. } = *self;
         let mean = (0..256).map(|i| profile((i as f32 + 0.5) / 256.0, sharpness)).sum::<f32>() / 256.0;
-        let map = self.mapping.compile();
+        let map = self.mapping.compile(Space::Local);
         Ok(Compiled::Marble(CompiledMarble { colors, distortion, sharpness, mean, octaves, map }))
     }
 }

@@ -158,7 +158,7 @@ closed_set! {
     }
 }
 
-/// A number or colour, or the name of a texture that gives it.
+/// A number or color, or a texture that gives it at every point: written in place, or by its name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, a colour or the name of a texture")]
 pub enum Input<T> {

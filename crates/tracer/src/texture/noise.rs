@@ -7,7 +7,8 @@
 use super::compiled::Pair;
 use super::mapping::Map;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Texture, TextureError, TextureTable, check, lattice,
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check,
+    lattice,
 };
 use juggler_math::Rgb;
 use schemars::JsonSchema;
@@ -43,7 +44,7 @@ impl Texture for Noise {
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
-        Ok(Compiled::Noise(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile() }))
+        Ok(Compiled::Noise(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile(Space::Local) }))
     }
 }
 

@@ -44,8 +44,8 @@ impl Texture for Triplanar {
     }
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        let space = if self.mapping.space == Space::Uv { Space::Local } else { self.mapping.space };
-        let map = Mapping { space, ..self.mapping }.compile();
+        let space = self.mapping.space.filter(|space| *space != Space::Uv);
+        let map = Mapping { space, ..self.mapping }.compile(Space::Local);
         let texture = resolver.slot("texture", &self.texture, 3)?;
         Ok(Compiled::Triplanar(CompiledTriplanar { texture, sharpness: self.sharpness, map }))
     }
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn weights_add_up_and_follow_their_power() {
         let compiled = |sharpness| {
-            let map = Mapping::of(Space::World).compile();
+            let map = Mapping::of(Space::World).compile(Space::Local);
             CompiledTriplanar { texture: Slot::Value(Rgb::WHITE), sharpness, map }
         };
         let normal = Vec3::new(2.0, -1.0, 0.0) / 5f32.sqrt();

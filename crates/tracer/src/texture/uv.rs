@@ -5,7 +5,7 @@
 //! ```
 
 use super::mapping::Map;
-use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Texture, TextureError};
+use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ impl Texture for Uv {
     }
 
     fn compile(&self, _: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Uv(CompiledUv { map: self.mapping.compile() }))
+        Ok(Compiled::Uv(CompiledUv { map: self.mapping.compile(Space::Uv) }))
     }
 }
 

@@ -92,9 +92,9 @@ impl Texture for Voronoi {
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
-        let flat = self.mapping.space == Space::Uv;
+        let flat = self.mapping.space_or(Space::Local) == Space::Uv;
         let points = Points { metric: self.metric, jitter: self.jitter, seed: self.seed, flat };
-        let (feature, map) = (self.feature, self.mapping.compile());
+        let (feature, map) = (self.feature, self.mapping.compile(Space::Local));
         // Any 512 places will do for the mean.
         let share = |i| points.near(numbers(combine(9, i)) * 64.0).feature(feature);
         let mean = (0..512).map(share).sum::<f32>() / 512.0;

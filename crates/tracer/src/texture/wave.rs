@@ -10,7 +10,8 @@ use super::compiled::Pair;
 use super::lattice::{kept, pulses};
 use super::mapping::Map;
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Texture, TextureError, TextureTable, check,
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
+    check,
 };
 use juggler_math::{Rgb, fun};
 use schemars::JsonSchema;
@@ -91,7 +92,14 @@ impl Texture for Wave {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
         let Self { shape, profile, distortion, octaves, .. } = *self;
-        Ok(Compiled::Wave(CompiledWave { colors, shape, profile, distortion, octaves, map: self.mapping.compile() }))
+        Ok(Compiled::Wave(CompiledWave {
+            colors,
+            shape,
+            profile,
+            distortion,
+            octaves,
+            map: self.mapping.compile(Space::Uv),
+        }))
     }
 }
 

@@ -11,7 +11,8 @@ use super::compiled::Pair;
 use super::lattice::{kept, noise, smoothstep};
 use super::mapping::{Map, Place};
 use super::{
-    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Texture, TextureError, TextureTable, check,
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
+    check,
 };
 use juggler_math::hash::combine;
 use juggler_math::{Rgb, Vec3};
@@ -72,7 +73,7 @@ impl Texture for Wood {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("light", &self.light)?, high: resolver.color("dark", &self.dark)? };
         let Self { distortion, grain, octaves, .. } = *self;
-        Ok(Compiled::Wood(CompiledWood { colors, distortion, grain, octaves, map: self.mapping.compile() }))
+        Ok(Compiled::Wood(CompiledWood { colors, distortion, grain, octaves, map: self.mapping.compile(Space::Local) }))
     }
 }
 

@@ -29,7 +29,7 @@ struct Shining {
     /// Its first emitter.
     first: u32,
     /// Of each of its parts which of its emitters it belongs to; nothing where there is only one.
-    parts: Vec<u32>,
+    parts: Box<[u32]>,
 }
 
 /// Something with a place that gives off light.
@@ -118,7 +118,11 @@ impl Emitters {
             far.push((Far::Background, background.power(1.0)));
         }
         emitters.far = FarLights::new(far);
-        glowing.sort_by_key(|shape| shape.number);
+        // Mostly in order already; numbers are unique.
+        glowing.sort_unstable_by_key(|shape| shape.number);
+        emitters.shapes.reserve_exact(glowing.len());
+        emitters.finite.reserve(glowing.len());
+        bounds.reserve(glowing.len());
         for shape in glowing {
             emitters.add(shape, &mut bounds);
         }
@@ -146,7 +150,15 @@ impl Emitters {
             self.finite.push(Emitter::Shape(place));
             Vec::new()
         };
-        self.shapes.push(Shining { shape, first, parts });
+        self.shapes.push(Shining { shape, first, parts: parts.into_boxed_slice() });
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        let areas = self.finite.iter().filter(|emitter| matches!(emitter, Emitter::Area(..))).count();
+        let parts: usize = self.shapes.iter().map(|shape| size_of_val(&*shape.parts)).sum();
+        let listed = size_of_val(self.finite.as_slice()) + size_of_val(self.shapes.as_slice());
+        listed + parts + areas * size_of::<AreaEmitter>() + self.tree.heap_bytes()
     }
 
     /// Numbers of the shapes that shine, rising.

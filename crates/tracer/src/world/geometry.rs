@@ -23,6 +23,8 @@ pub struct Geometry {
     pub geometry_bytes: usize,
     /// Bytes of the hierarchies, over the objects and within meshes.
     pub bvh_bytes: usize,
+    /// Bytes of what is sampled as light: surfaces that emit, and the tree over all emitters.
+    pub emitter_bytes: usize,
     /// Bytes of the pictures that textures show.
     pub texture_bytes: usize,
     /// Bytes of the background's picture and tables.

@@ -261,10 +261,12 @@ impl Session {
             stats.expected_memory(take.expected);
             output::write_text(file, &stats.to_json())?;
         }
-        let lost = outcome.rays.not_finite;
-        if lost > 0 {
-            let samples = counted(lost.into(), "sample");
-            console::say(&format!("warning: {samples} had no finite value and counted as black"));
+        let lost = match outcome.rays.not_finite {
+            0 => String::new(),
+            lost => format!(", {} not finite", counted(lost.into(), "sample")),
+        };
+        if !lost.is_empty() {
+            console::say(&format!("warning: {}{lost}, counted as black", shot.output));
         }
         let clamping = if picture.is_clamped() { format!(", {}", clamping(&outcome.film)) } else { String::new() };
         if self.plan.quiet || self.plan.reel.is_some() {
@@ -278,7 +280,7 @@ impl Session {
         let samples = counted(picture.samples().into(), "sample");
         let rate = amount(rays_per_second(&outcome.rays, seconds.render));
         let took = duration(total);
-        self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s{clamping}", shot.output))
+        self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s{clamping}{lost}", shot.output))
     }
 
     /// Says which frames are there for a film to come.

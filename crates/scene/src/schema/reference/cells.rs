@@ -70,15 +70,16 @@ impl Cells<'_> {
         })
     }
 
-    /// A material or its name; a number or the name of a texture.
+    /// A material or its name; a number, a texture or its name.
     fn alternatives(&self, branches: &[Value], many: bool) -> String {
         let is = |branch: &Value, t: &str| branch.get("type").is_some_and(|found| found == t);
-        let material = branches.iter().any(|branch| self.schema.follow(branch).0 == Some("AnyMaterial"));
+        let named = |branch: &Value| matches!(self.schema.follow(branch).0, Some("AnyMaterial" | "AnyTexture"));
+        let is_named = branches.iter().any(named);
         let (texts, others): (Vec<&Value>, Vec<&Value>) =
             branches.iter().filter(|branch| !is(branch, "null")).partition(|branch| is(branch, "string"));
         let mut words: Vec<String> = others.into_iter().map(|branch| self.words(branch, many)).collect();
         if !texts.is_empty() {
-            words.push(if material { "its name".into() } else { "the name of a [texture](#textures)".into() });
+            words.push(if is_named { "its name".into() } else { "string".into() });
         }
         words.join(" or ")
     }
@@ -143,13 +144,19 @@ fn range(schema: &Value) -> String {
     let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
     match (bound("minimum"), bound("maximum")) {
         (Some(least), Some(most)) if least == most => return format!(": {least}"),
-        (Some(least), Some(most)) => return format!(" from {least} to {most}"),
+        (Some(least), Some(most)) => return format!(" from {} to {}", shown(least), shown(most)),
         _ => {}
     }
     let signs = [("exclusiveMinimum", ">"), ("minimum", "≥"), ("exclusiveMaximum", "<"), ("maximum", "≤")];
-    let limits = signs.iter().filter_map(|(key, sign)| Some(format!("{sign} {}", bound(key)?)));
+    let limits = signs.iter().filter_map(|(key, sign)| Some(format!("{sign} {}", shown(bound(key)?))));
     let limits = limits.collect::<Vec<_>>().join(" and ");
     if limits.is_empty() { limits } else { format!(" {limits}") }
+}
+
+/// A limit, with an exponent where its digits would fill a line.
+fn shown(bound: f64) -> String {
+    let size = bound.abs();
+    if size >= 1e16 || size > 0.0 && size < 1e-9 { format!("{bound:e}") } else { bound.to_string() }
 }
 
 /// Compact JSON with a blank after commas and colons.

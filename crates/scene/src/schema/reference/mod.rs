@@ -1,7 +1,7 @@
 //! The format's documentation: a short introduction written by hand, then every part of the schema as Markdown.
 
 use super::{Schema, variants};
-use crate::compile::{MAX_EDGE, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
+use crate::compile::{MAX_EDGE, MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
 use crate::expression::FUNCTIONS;
 use crate::validate::{family_noun, plural};
 use crate::{animate, compile, document, expression};
@@ -54,6 +54,7 @@ fn limits() -> String {
         ("scene files of a scene", document::MAX_FILES.to_string()),
         ("objects, those of groups counted as often as they are placed", MAX_OBJECTS.to_string()),
         ("objects in memory, those of large groups that repeat counted once", MAX_STORED.to_string()),
+        ("shapes that emit light, those of groups counted as often as they are placed", MAX_EMITTERS.to_string()),
         ("nesting of groups", MAX_NESTING.to_string()),
         ("nesting of materials", juggler_tracer::material::MAX_NESTING.to_string()),
         ("nesting of textures", juggler_tracer::texture::MAX_NESTING.to_string()),

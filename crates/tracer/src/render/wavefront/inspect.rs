@@ -87,13 +87,13 @@ pub fn inspect(
     let pixels = Rect { x: pixel[0], y: pixel[1], width: 1, height: 1 };
     let work = Work::first(pixels, job.samples);
     let mut film = Exposed::new(&work, &crate::layer::NONE);
-    let mut inspector = Inspector { engine: Engine::new(job), sample: Inspected::default() };
+    let mut inspector = Inspector { engine: Engine::new(job), control, sample: Inspected::default() };
     inspector.engine.harvest.record = Some(Record::logging());
     for index in 0..job.samples {
+        let sample = inspector.sample(&Work { samples: index..index + 1, ..work.clone() });
         if control.is_cancelled() {
             return Err(Stopped);
         }
-        let sample = inspector.sample(&Work { samples: index..index + 1, ..work.clone() });
         let Inspected { radiance, clamped, .. } = sample;
         film.add(Samples { radiance: &[radiance], clamped: &[clamped], ..Samples::default() });
         control.add(1, &Rays::default());
@@ -106,6 +106,8 @@ pub fn inspect(
 /// One sample after the other.
 struct Inspector<'j> {
     engine: Engine<'j>,
+    control: &'j Control,
+    /// The sample that is traced; not all of it when `control` is cancelled.
     sample: Inspected,
 }
 
@@ -142,7 +144,9 @@ impl Inspector<'_> {
         let weight = camera.paths.first().map_or(1.0, |path| path.weight.r);
         self.sample = Inspected { index: work.samples.start, weight, ..Inspected::default() };
         let mut stack = vec![Flight { from: vec![None; camera.len()], queue: camera }];
-        while let Some(flight) = stack.pop() {
+        while let Some(flight) = stack.pop()
+            && !self.control.is_cancelled()
+        {
             self.segment(flight, &mut stack);
         }
         std::mem::take(&mut self.sample)
@@ -161,7 +165,7 @@ impl Inspector<'_> {
         let met = self.log().map_or(0, |log| log.lights.len());
         segment.straight = self.engine.harvest.shadows.iter().map(|queue| queue.gains.len()).sum();
         self.ways_by_balls(&flight.queue, &mut segment);
-        self.engine.shadows();
+        self.engine.shadows(self.control);
         self.keep(&flight, &mut segment);
         self.gains(&flight.queue, &segment, met);
         self.go_on(&flight.queue, &segment, stack);

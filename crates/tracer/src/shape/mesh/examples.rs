@@ -135,7 +135,7 @@ fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
     let mut random = juggler_math::testing::Random::new(51);
     for (moments, bent, kept) in [(2, false, 2), (17, false, 2), (17, true, 17)] {
         let keys = wandering(moments, bent);
-        let moving = Mesh::moving(keys.clone()).unwrap();
+        let moving = Mesh::moving(keys.clone(), None).unwrap();
         for _ in 0..40 {
             let time = random.f32();
             let (key, share) = juggler_math::motion::stretch(moments, time);
@@ -156,7 +156,7 @@ fn a_mesh_that_moves_is_at_each_time_the_mesh_between() {
         }
     }
     let (small, large) = (globe(8, 6, 1.0, Vec3::ZERO).take_data(), globe(9, 6, 1.0, Vec3::ZERO).take_data());
-    assert!(Mesh::moving(vec![small, large]).is_err());
+    assert!(Mesh::moving(vec![small, large], None).is_err());
 }
 
 #[test]
@@ -176,4 +176,37 @@ fn morphs_blend_corners_and_normals_follow() {
     assert!(surface.shading_normal.dot(exact) > 0.995, "{surface:?} {exact}");
     let mut few = Mesh { morphs: vec![morph(&wide[1..].to_vec(), 0.5)], ..base };
     assert_eq!(few.prepare().unwrap_err().field, "morphs[0]");
+}
+
+#[test]
+fn a_crease_angle_makes_a_flat_mesh_round_and_keeps_its_shape() {
+    let mut arrays = globe(24, 12, 1.0, Vec3::ZERO);
+    arrays.normals.clear();
+    let with = |crease_angle_degrees: Option<f32>| {
+        let mut mesh = Mesh { crease_angle_degrees, ..arrays.clone() };
+        mesh.prepare().unwrap();
+        mesh
+    };
+    let (flat, round, creased) = (with(None), with(Some(60.0)), with(Some(1.0)));
+    let mut random = juggler_math::testing::Random::new(52);
+    let mut most = [0.0f32; 3];
+    for _ in 0..500 {
+        let ray = random.ray(3.0);
+        let hits = [&flat, &round, &creased].map(|mesh| (mesh, mesh.intersect(&ray)));
+        for (most, (mesh, hit)) in most.iter_mut().zip(hits) {
+            assert_eq!(hit, hits[0].1);
+            let Some(hit) = hit else { continue };
+            let surface = mesh.surface(&ray, &hit);
+            let outwards = surface.point.normalize();
+            let off = fun::acos(surface.shading_normal.dot(outwards).abs().min(1.0)).to_degrees();
+            *most = most.max(off);
+        }
+    }
+    assert!(most[0] > 6.0 && most[1] < 4.0 && most[2] > 6.0, "{most:?}");
+    let keys = wandering(5, true).into_iter().map(|key| MeshData { normals: Vec::new(), ..key }).collect::<Vec<_>>();
+    let moving = Mesh::moving(keys, Some(180.0)).unwrap();
+    let ray = Ray { time: 1.0, ..Ray::new(Vec3::new(3.3, 9.0, 0.4), Vec3::NEG_Y) };
+    let surface = moving.surface(&ray, &moving.intersect(&ray).unwrap());
+    let outwards = (surface.point - Vec3::X * 3.0).normalize();
+    assert!(surface.shading_normal.dot(outwards) > 0.99, "{surface:?}");
 }

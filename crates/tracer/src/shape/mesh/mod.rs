@@ -19,6 +19,7 @@ use super::facet::Facet;
 use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
+use crease::Creases;
 use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
 use prepared::Prepared;
@@ -26,6 +27,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+mod crease;
 mod data;
 mod deforming;
 mod many;
@@ -60,6 +62,12 @@ pub struct Mesh {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<[f32; 2]>")]
     pub uvs: Vec<Vec2>,
+    /// Greatest angle between the normals of two neighboring triangles whose edge is shaded smoothly, in degrees, 0 to 180:
+    /// 30 to 60 for machine parts, 180 for a wholly smooth surface. Without it a mesh without `normals` is shaded flat. It has
+    /// no effect on a mesh with `normals`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 180))]
+    pub crease_angle_degrees: Option<f32>,
     /// Other places that its corners go to, each as far as its weight says.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub morphs: Vec<Morph>,
@@ -109,8 +117,8 @@ impl Mesh {
     }
 
     /// A mesh that is as these say at even times from opening to closing of the shutter; all with the same triangles.
-    /// Its area, and the places on it, are those of the first.
-    pub fn moving(keys: Vec<MeshData>) -> Result<Self, InvalidShape> {
+    /// Its area, the places on it, and where `crease_angle_degrees` leaves creases, are those of the first.
+    pub fn moving(mut keys: Vec<MeshData>, crease_angle_degrees: Option<f32>) -> Result<Self, InvalidShape> {
         let same = keys.windows(2).all(|pair| match pair {
             [a, b] => a.triangles == b.triangles && a.positions.len() == b.positions.len(),
             _ => true,
@@ -118,7 +126,11 @@ impl Mesh {
         if !same {
             return Err(check::invalid("triangles", "a mesh that moves keeps its triangles"));
         }
-        Ok(Self { prepared: Some(Arc::new(Prepared::moving(keys)?)), ..Self::default() })
+        if let (Some(angle), Some(first)) = (crease_angle_degrees, keys.first().filter(|key| key.normals.is_empty())) {
+            let creases = Creases::new(first, angle)?;
+            keys = keys.into_iter().map(|key| creases.smoothed(key)).collect();
+        }
+        Ok(Self { prepared: Some(Arc::new(Prepared::moving(keys)?)), crease_angle_degrees, ..Self::default() })
     }
 
     /// Takes what the file holds. An error when the description has arrays of its own beside the file.
@@ -126,7 +138,8 @@ impl Mesh {
         if !self.positions.is_empty() || !self.triangles.is_empty() {
             return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
         }
-        *self = Self { file: self.file.take(), morphs: std::mem::take(&mut self.morphs), ..data.into() };
+        let (file, morphs) = (self.file.take(), std::mem::take(&mut self.morphs));
+        *self = Self { file, morphs, crease_angle_degrees: self.crease_angle_degrees, ..data.into() };
         Ok(())
     }
 
@@ -197,6 +210,9 @@ impl Shape for Mesh {
         let mut data = self.take_data();
         let morphs: Vec<(&[Vec3], f32)> = self.morphs.iter().map(|m| (m.positions.as_slice(), m.weight)).collect();
         morph::blend(&mut data, &morphs)?;
+        if let Some(angle) = self.crease_angle_degrees.filter(|_| data.normals.is_empty()) {
+            data = Creases::new(&data, angle)?.smoothed(data);
+        }
         self.prepared = Some(Arc::new(Prepared::new(data)?));
         Ok(())
     }

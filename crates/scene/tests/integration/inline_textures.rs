@@ -1,0 +1,76 @@
+//! Textures that are written in place, where the name of one may stand.
+
+use juggler_scene::{Problems, Scene, SceneError};
+use juggler_tracer::material::AnyMaterial;
+use juggler_tracer::texture::{AnyTexture, Input};
+
+/// A scene with this for the color of its only material.
+fn scene(diffuse: &str, more: &str) -> String {
+    format!(
+        r#"{{"version": 1{more},
+  "materials": {{"wall": {{"phong": {{"diffuse": {diffuse}}}}}}},
+  "objects": [{{"shape": "sphere", "material": "wall"}}]}}"#
+    )
+}
+
+fn problems(text: String) -> Problems {
+    match Scene::from_json(text, "inline.json") {
+        Ok(scene) => scene.check(),
+        Err(SceneError::Problems(problems)) => problems,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn a_texture_in_place_is_that_texture_under_a_name() {
+    let marble = r#"{"marble": {"scale": 2, "stone": [0.9, 0.8, 0.7]}}"#;
+    let scene = Scene::from_json(scene(marble, ""), "inline.json").unwrap();
+    let name = "/materials/wall/phong/diffuse";
+    assert_eq!(scene.description.textures[name], serde_json::from_str::<AnyTexture>(marble).unwrap());
+    let AnyMaterial::Phong(wall) = &scene.description.materials["wall"] else { panic!("another material") };
+    assert_eq!(wall.diffuse, Input::Texture(name.into()));
+    assert_eq!(scene.compile().unwrap().warnings.list(), []);
+    // Written out, it is one of the scene's textures, and reads as such.
+    let again = Scene::from_json(scene.to_json(), "again.json").unwrap();
+    assert_eq!(again.description, scene.description);
+}
+
+#[test]
+fn textures_lie_in_textures_and_in_objects_materials() {
+    let nested = r#"{"mix": {"a": {"noise": {}}, "b": {"checker": {"even": "tiles", "odd": {"wood": {}}}}, "amount": {"fbm": {}}}}"#;
+    let tiles = r#", "textures": {"tiles": {"checker": {"odd": {"dots": {}}}}}"#;
+    let text = scene(nested, tiles).replace(
+        r#""material": "wall""#,
+        r#""material": {"principled": {"roughness": {"wave": {}}, "base_color": {"brick": {}}}}"#,
+    );
+    let scene = Scene::from_json(text, "inline.json").unwrap();
+    assert_eq!(scene.description.textures.len(), 9);
+    assert!(scene.description.textures.contains_key("/objects/0/material/principled/roughness"));
+    assert!(scene.description.textures.contains_key("/materials/wall/phong/diffuse/mix/b/checker/odd"));
+    scene.compile().unwrap();
+}
+
+#[test]
+fn mistakes_are_told_where_they_stand() {
+    for (diffuse, path, message) in [
+        (r#"{"noise": {"scale": 0}}"#, "materials.wall.phong.diffuse.noise.scale", "must not be 0"),
+        (r#"{"noise": {"scael": 1}}"#, "materials.wall.phong.diffuse.noise.scael", "scael"),
+        (r#"{"nose": {}}"#, "materials.wall.phong.diffuse", "unknown kind of texture `nose`"),
+        (r#"{"image": {"file": "none.png"}}"#, "materials.wall.phong.diffuse.image.file", "there is no such file"),
+        (
+            r#"{"checker": {"even": "nobody"}}"#,
+            "materials.wall.phong.diffuse.checker.even",
+            "no texture is called `nobody`",
+        ),
+        (r#"{"mix": {"a": {"dots": {"radius": 7}}}}"#, "materials.wall.phong.diffuse.mix.a.dots.radius", "`radius`"),
+    ] {
+        let problems = problems(scene(diffuse, ""));
+        let [problem] = problems.list() else { panic!("{diffuse}: {problems}") };
+        assert!(problem.path.starts_with(path) && problem.message.contains(message), "{diffuse}: {problems}");
+        assert!(problem.place.is_some_and(|place| problems.sources().get(place.file).is_some()), "{diffuse}");
+        assert!(problems.to_string().contains("inline.json:2:"), "{problems}");
+    }
+    let taken = r#", "textures": {"/materials/wall/phong/diffuse": {"noise": {}}}"#;
+    let problems = problems(scene(r#"{"dots": {}}"#, taken));
+    assert!(problems.to_string().contains("is called `/materials/wall/phong/diffuse`"), "{problems}");
+}

@@ -1,0 +1,41 @@
+//! A render that is cancelled ends at the next vertex, and its engine can be used again.
+
+use super::*;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+/// The classic integrator, and a control that is cancelled at a certain vertex.
+struct Cancelling<'c> {
+    classic: AnyIntegrator,
+    control: &'c Control,
+    /// Vertices that were handed over.
+    vertices: AtomicU32,
+    cancelled_at: u32,
+}
+
+impl Integrator for Cancelling<'_> {
+    fn vertex(&self, world: &World, ray: &Ray, path: &PathState, vertex: &Vertex, emit: &mut Emit) {
+        if self.vertices.fetch_add(1, Relaxed) + 1 == self.cancelled_at {
+            self.control.cancel();
+        }
+        self.classic.vertex(world, ray, path, vertex, emit);
+    }
+}
+
+#[test]
+fn a_cancelled_render_ends_at_the_next_vertex() {
+    let (world, size, samples) = (busy(), UVec2::new(12, 8), 3);
+    let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
+    let classic: AnyIntegrator = Classic { max_depth: 3, ..Classic::default() }.into();
+    let work = Work::first(Rect { x: 0, y: 0, width: size.x, height: size.y }, samples);
+    for cancelled_at in [1, 2, 100, 1000] {
+        let control = Control::default();
+        let integrator =
+            Cancelling { classic: classic.clone(), control: &control, vertices: AtomicU32::new(0), cancelled_at };
+        let job = Job { integrator: &integrator, ..job(&world, &camera, &classic, samples) };
+        let mut engine = wavefront::Engine::new(&job);
+        assert_eq!(engine.render(&work, &control), Err(Stopped));
+        assert_eq!(integrator.vertices.load(Relaxed), cancelled_at);
+        let again = engine.render(&work, &Control::default()).unwrap();
+        assert_eq!(again, job.render(&work, &Control::default()).unwrap(), "cancelled at vertex {cancelled_at}");
+    }
+}
