@@ -1,9 +1,10 @@
 //! What was typed. What it means is worked out in [`crate::plan`].
 
-use crate::command::Command;
+use crate::command::Command as Task;
 use crate::progress::Progress;
+use crate::tips;
 use crate::value::{self, FrameRange, Shard};
-use clap::{Args as Arguments, ColorChoice, CommandFactory, FromArgMatches, Parser};
+use clap::{Arg, Args as Arguments, ColorChoice, Command, CommandFactory, FromArgMatches, Parser};
 use juggler::Denoiser;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::tracer::film::Rect;
@@ -16,7 +17,7 @@ use std::time::Duration;
 pub struct Args {
     /// What to do.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Task,
 }
 
 impl Args {
@@ -24,10 +25,20 @@ impl Args {
     /// be, else the scene; where neither fits, the error is that of the value.
     pub fn parse_words(words: &[OsString], color: ColorChoice) -> Result<Self, clap::Error> {
         let parse = |words: &[OsString]| {
-            let matches = Self::command().color(color).try_get_matches_from(words)?;
+            let matches = Self::command_line().color(color).try_get_matches_from(words)?;
             Self::from_arg_matches(&matches)
         };
-        parse(words).or_else(|error| parse(&with_optional_values(words)).map_err(|_| error))
+        let parsed = parse(words).or_else(|error| parse(&with_optional_values(words)).map_err(|_| error));
+        parsed.map_err(tips::mended)
+    }
+
+    /// All commands and their flags. A negative number after a flag is the flag's value, to be refused as such.
+    pub fn command_line() -> Command {
+        let numbers = |flag: Arg| {
+            let takes_value = flag.get_long().is_some() && flag.get_action().takes_values();
+            if takes_value { flag.allow_negative_numbers(true) } else { flag }
+        };
+        Self::command().mut_subcommands(|command| command.mut_args(numbers))
     }
 }
 
@@ -46,7 +57,7 @@ pub struct ViewArgs {
     #[arg(long, value_name = "NAME", help_heading = "Picture")]
     pub integrator: Option<String>,
 
-    /// How often a path may be mirrored or refracted
+    /// Maximum number of mirror and glass bounces (`classic`) or of path segments (`path`)
     #[arg(long, value_name = "N", help_heading = "Picture")]
     pub max_depth: Option<u32>,
 
@@ -107,7 +118,7 @@ pub struct RenderArgs {
     pub tone: Option<String>,
 
     /// Stops by which the picture is brightened
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, help_heading = "Output")]
+    #[arg(long, value_name = "STOPS", help_heading = "Output")]
     pub exposure: Option<f32>,
 
     /// The light that is to look white, by its colour temperature, such as 3200, and how far it is greener, such as 3200,5

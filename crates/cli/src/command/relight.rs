@@ -4,7 +4,7 @@ use crate::console;
 use crate::failure::Failure;
 use crate::format::duration;
 use crate::output::STANDARD_OUTPUT;
-use crate::plan::Encoding;
+use crate::plan::{Encoding, Target, effect};
 use clap::Args;
 use juggler::film::{self, Description, Wanted};
 use juggler::imaging::{self, Header, Tone};
@@ -36,7 +36,7 @@ pub struct Relight {
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: Option<u8>,
     /// Stops by which the picture is brightened, instead of those of the render
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS")]
     exposure: Option<f32>,
     /// Say nothing but errors
     #[arg(short, long)]
@@ -47,8 +47,10 @@ impl Relight {
     /// Mixes the groups anew.
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
-        let Encoding { format, options } =
-            Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+        let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+        let given = [("--quality", self.quality.is_some()), ("--exposure", self.exposure.is_some())];
+        effect::check(Target::Picture(encoding), &given)?;
+        let Encoding { format, options } = encoding;
         let merge = film::Merge::open(&self.films, Wanted::Whole)?;
         let Description { region, tone, metadata, layers, viewpoint, .. } = merge.description();
         let set = LayerSet::of_part(layers)?;

@@ -111,7 +111,7 @@ fn files_that_cannot_be() {
     fs::create_dir(folder.path("folder.png")).unwrap();
     fs::write(folder.path("junk.png"), "no picture").unwrap();
     let message = folder.bad("render ball.json -o none/there.png", 3);
-    assert_eq!(message, "error: cannot write `none/there.png`: no such file or folder\n");
+    assert_eq!(message, "error: cannot write `none/there.png`: there is no folder `none`\n");
     folder.bad("render ball.json -o folder.png", 3);
     folder.bad("render ball.json -q -o a.png --stats none/there.json", 3);
     folder.bad("compare junk.png junk.png", 3);

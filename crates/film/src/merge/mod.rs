@@ -12,6 +12,7 @@ mod tests;
 
 pub use complaint::{Complaint, MergeError, ToDo};
 
+use crate::counts;
 use crate::part::{Chunk, Description, Part, PartError, PartWriter};
 use juggler_math::Rgb;
 use juggler_tracer::film::{Digest, Layout, Rect, Summary, TILE, Tile};
@@ -71,6 +72,16 @@ impl Merge {
             Ok::<(), E>(())
         })?;
         Ok(digest.finish())
+    }
+
+    /// How many samples each tile gets from all parts together, in the order of the tiles.
+    pub fn counts(&self) -> Result<Vec<u32>, PartError> {
+        let mut counts = vec![0_u32; usize::try_from(self.description.layout().tiles()).unwrap_or(0)];
+        for part in &self.parts {
+            let own = counts::of_part(part)?;
+            counts.iter_mut().zip(own).for_each(|(count, own)| *count = count.saturating_add(own));
+        }
+        Ok(counts)
     }
 
     /// Writes one part that holds all that the parts hold. Returns its bytes.

@@ -6,11 +6,11 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::plan::layers::{self, Place};
 use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard};
-use crate::progress::{Watch, watched};
-use crate::reproduce::{self, SAMPLES_PER_TILE};
+use crate::progress::{Goal, Watch, watched};
+use crate::reproduce::{self, SAMPLES, SAMPLES_PER_TILE};
 use juggler::denoise::Denoised;
 use juggler::film::checkpoint::{self, Checkpoint};
-use juggler::film::counts;
+use juggler::film::counts::{self, Spread};
 use juggler::film::part::{Description, Part, PartError, Share, write};
 use juggler::film::share::{self, Work};
 use juggler::imaging::layered::LayeredWriter;
@@ -155,7 +155,8 @@ impl Exposure<'_> {
         if is_own {
             self.take.shot.checkpoint.as_deref().into_iter().for_each(forget);
         }
-        Ok(Outcome { film, rays: control.rays(), render, denoise, write: write.elapsed() })
+        let samples = Spread::of_film(&self.film);
+        Ok(Outcome { film, samples, rays: control.rays(), render, denoise, write: write.elapsed() })
     }
 
     /// Opens the checkpoint and takes over what it holds. One of our own that does not fit is of another scene: it goes.
@@ -193,8 +194,14 @@ impl Exposure<'_> {
         let Session { plan, reporter } = self.session;
         let goal = self.film.goal().saturating_sub(self.film.samples());
         let course = self.take.moment.course;
-        reporter.start(&self.take.shot.output, self.take.picture.size(), self.take.picture.samples(), course);
-        let watch = Watch { reporter, interrupts, control, samples: goal, time: plan.time, course };
+        let goal = match (self.take.picture.limit(), plan.time) {
+            (Limit::Noise(level), _) => Goal::Noise(&self.film, *level),
+            (_, Some(time)) => Goal::Time(time, goal),
+            _ => Goal::Samples(goal),
+        };
+        let samples = matches!(goal, Goal::Samples(_)).then_some(self.take.picture.samples());
+        reporter.start(&self.take.shot.output, self.take.picture.size(), samples, course);
+        let watch = Watch { reporter, interrupts, control, goal, course };
         let work = || self.take.picture.expose(&self.film, control);
         let result = watched(&watch, || match (kept, &plan.checkpoint) {
             (Some(kept), Some(Keeping { every, .. })) => self.keeping(kept, *every, work),
@@ -226,11 +233,6 @@ impl Exposure<'_> {
     /// All pixels, the noise taken out of them where that is wished for.
     fn pixels(&self, control: &Control) -> Result<Option<Vec<Rgb>>, Failure> {
         let Some(denoiser) = self.session.plan.settings.denoiser else { return Ok(None) };
-        if self.take.picture.samples() < 2 {
-            return Err(Failure::Wrong(
-                "--denoise needs 2 samples a pixel or more: their differences are what it goes by".into(),
-            ));
-        }
         let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
         let guides = self.take.picture.guides(&self.film);
         let denoised = guides.denoise(denoiser, library.as_deref(), control)?;
@@ -277,6 +279,10 @@ impl Exposure<'_> {
                 Ok(picture.develop(&self.film, |_| Ok::<(), Failure>(()))?)
             }
             Product::Picture(encoding) => {
+                if *picture.limit() != Limit::Samples {
+                    let spread = Spread::of_film(&self.film).to_string();
+                    self.header.metadata.push((SAMPLES.to_owned(), spread));
+                }
                 if matches!(picture.limit(), Limit::Time { .. }) {
                     let counts = counts::to_text(&self.film.counts());
                     self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));

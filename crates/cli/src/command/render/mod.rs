@@ -8,11 +8,11 @@ mod studio;
 use crate::args::RenderArgs;
 use crate::console;
 use crate::failure::Failure;
-use crate::format::{amount, clamping, counted, duration};
+use crate::format::{amount, clamping, counted, duration, samples};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{Plan, Product, Reel, Shard, Shot};
-use crate::progress::{Course, Reporter, Watch, watched};
+use crate::plan::{Plan, Product, Reel, Shard, Shot, beyond_the_end, effect};
+use crate::progress::{Course, Goal, Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
@@ -78,10 +78,16 @@ struct Take<'t> {
 impl Session {
     fn all(self, start: Instant) -> Result<(), Failure> {
         let scene = source::load(&self.plan.scene, self.plan.max_memory)?;
+        effect::check_scene(&self.plan.settings, &scene)?;
         let animation = scene.description.animation;
         let header = self.plan.reel.as_ref().map(|reel| self.header(reel, &scene)).transpose()?;
         let shots = self.plan.shots(animation.frames, animation.frames_per_second)?;
+        self.warn_of_settings(&scene);
         let Some((reel, header)) = self.plan.reel.as_ref().zip(header) else {
+            let files = shots.first().map(|Shot { output, layers_output, checkpoint, .. }| {
+                [Some(output), layers_output.as_ref(), checkpoint.as_ref()]
+            });
+            files.into_iter().flatten().flatten().try_for_each(|file| output::check_folder(file))?;
             return self.frames(&scene, &shots, start, |_| true);
         };
         // What needs more memory than it may have is refused before anything is there, too.
@@ -215,6 +221,16 @@ impl Session {
         }
     }
 
+    /// Warns of settings of the scene's tone that the format of the picture ignores, and of frames beyond the end.
+    fn warn_of_settings(&self, scene: &Scene) {
+        let frames = scene.description.animation.frames;
+        let last = self.plan.frames(frames).end.saturating_sub(1);
+        let tone = effect::idle_tone(self.plan.target(), &scene.description.tone);
+        for warning in tone.into_iter().chain(beyond_the_end(last, frames)).filter(|_| !self.plan.quiet) {
+            console::say(&warning);
+        }
+    }
+
     /// Renders row by row.
     fn render(
         &self,
@@ -227,9 +243,9 @@ impl Session {
         let control = Control::default();
         let writer = self.writer(format, &shot.output, header)?;
         let course = take.moment.course;
-        self.reporter.start(&shot.output, picture.size(), picture.samples(), course);
-        let samples = picture.total_samples();
-        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, samples, time: None, course };
+        self.reporter.start(&shot.output, picture.size(), Some(picture.samples()), course);
+        let goal = Goal::Samples(picture.total_samples());
+        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, goal, course };
         watched(&watch, || picture.write(writer, &control)).map_err(|error| {
             self.reporter.clear();
             interrupts.caught().unwrap_or_else(|| error.into())
@@ -275,7 +291,7 @@ impl Session {
             return Ok(());
         }
         let [width, height] = picture.size();
-        let samples = counted(picture.samples().into(), "sample");
+        let samples = samples(&outcome.samples);
         let rate = amount(rays_per_second(&outcome.rays, seconds.render));
         let took = duration(total);
         self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s{clamping}", shot.output))
