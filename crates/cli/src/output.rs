@@ -3,7 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, missing_folder};
 use juggler::imaging::atomic;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, IsTerminal};
 use std::ops::Range;
 use std::path::Path;
 
@@ -56,6 +56,18 @@ fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
         let is_width = digits.len() <= 2 && digits.bytes().all(|byte| byte.is_ascii_digit());
         is_width.then(|| (start..start + digits.len() + 2, digits.parse().unwrap_or(1)))
     })
+}
+
+/// Refuses a picture on a terminal: nobody can read its bytes there, and they change how the terminal behaves.
+pub fn check_stream(output: &str) -> Result<(), Failure> {
+    if output == STANDARD_OUTPUT && std::io::stdout().is_terminal() {
+        return Err(Failure::Wrong(
+            "-o - writes the picture to standard output, which is a terminal: give a file (-o picture.png), or send it \
+             to one (> picture.png) or to another program (| display)"
+                .into(),
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses a file that cannot be written because a folder on the way is missing: before anything is rendered.

@@ -7,8 +7,8 @@ mod product;
 mod reel;
 mod view;
 
-pub use parts::{Checkpoint, Cut, Shard};
 pub use effect::Target;
+pub use parts::{Checkpoint, Cut, Shard};
 pub use product::{Encoding, PART_ENDING, Product};
 pub use reel::Reel;
 pub use view::beyond_the_end;

@@ -316,7 +316,7 @@ pub fn watched<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
                 if matches!(goal, Goal::Time(limit, _) if start.elapsed() >= limit) {
                     control.finish();
                 }
-                if reporter.ticks(&goal).is_some_and(|each| ticks % each == 0) {
+                if reporter.ticks(&goal).is_some_and(|each| ticks.is_multiple_of(each)) {
                     reporter.report(&Look::at(control, &goal, start, course));
                 }
             }

@@ -3,10 +3,12 @@
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, clamping, counted, duration, samples};
+use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::effect::{self, Given};
 use crate::plan::layers::{self, Place};
 use crate::plan::{Encoding, PART_ENDING, Target};
+use crate::progress::{Goal, Reporter, Watch, watched};
 use crate::reproduce::SAMPLES;
 use crate::stats::{self, Clamped};
 use clap::Args;
@@ -62,15 +64,24 @@ enum Made {
 }
 
 /// The pixels of the picture that the parts make, without noise.
-fn denoised(merge: &film::Merge, set: &LayerSet, denoiser: Denoiser) -> Result<Vec<Rgb>, Failure> {
+fn denoised(
+    merge: &film::Merge,
+    set: &LayerSet,
+    denoiser: Denoiser,
+    interrupts: &Interrupts,
+) -> Result<Vec<Rgb>, Failure> {
     let mut guides = Guides::new(merge.description().region);
     merge.rows_of_tiles(|_, tiles, _| {
+        interrupts.check()?;
         tiles.iter().for_each(|tile| guides.add(set, tile));
         Ok::<(), Failure>(())
     })?;
     let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
-    // Nobody cancels it.
-    let denoised = guides.denoise(denoiser, library.as_deref(), &Control::default())?;
+    let control = Control::default();
+    let watch =
+        Watch { reporter: &Reporter::Nothing, interrupts, control: &control, goal: Goal::Samples(0), course: None };
+    let denoised = watched(&watch, || guides.denoise(denoiser, library.as_deref(), &control))?;
+    interrupts.check()?;
     Ok(denoised.map(|denoised| denoised.pixels).unwrap_or_default())
 }
 
@@ -87,19 +98,22 @@ impl Merge {
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
         output::at_most_one_stream(&self.output, self.stats.as_deref())?;
+        output::check_stream(&self.output)?;
         let is_part =
             Path::new(&self.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING));
         let (merge, made) = if is_part {
             effect::check(Target::Part, &self.given())?;
             let merge = film::Merge::open(&self.parts, Wanted::Part)?;
-            let made = Made::Part(merge.write(Path::new(&self.output))?);
+            let interrupts = Interrupts::watch()?;
+            let made = Made::Part(merge.write(Path::new(&self.output), || interrupts.check())?);
             (merge, made)
         } else {
             let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
             effect::check(Target::Picture(encoding), &self.given())?;
             let merge = film::Merge::open(&self.parts, Wanted::Whole)?;
             let spread = spread(&merge)?;
-            let made = Made::Picture(self.picture(&merge, encoding, spread)?, spread);
+            let interrupts = Interrupts::watch()?;
+            let made = Made::Picture(self.picture(&merge, encoding, spread, &interrupts)?, spread);
             (merge, made)
         };
         self.report(merge.description(), &made, start)
@@ -115,7 +129,13 @@ impl Merge {
         ]
     }
 
-    fn picture(&self, merge: &film::Merge, encoding: Encoding, spread: Option<Spread>) -> Result<Summary, Failure> {
+    fn picture(
+        &self,
+        merge: &film::Merge,
+        encoding: Encoding,
+        spread: Option<Spread>,
+        interrupts: &Interrupts,
+    ) -> Result<Summary, Failure> {
         let Encoding { format, options } = encoding;
         let Description { region, tone, metadata, viewpoint, .. } = merge.description();
         let (mut metadata, viewpoint) = (metadata.clone(), *viewpoint);
@@ -136,9 +156,10 @@ impl Merge {
             STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
             file => Some(imaging::create(Path::new(file), format, &header)?),
         };
-        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser)).transpose()?;
+        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser, interrupts)).transpose()?;
         let mut rest = denoised.as_deref();
         let summary = merge.rows_of_tiles(|band, tiles, rows| {
+            interrupts.check()?;
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
             if let Some((writer, with_picture)) = &mut layers {
                 writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;

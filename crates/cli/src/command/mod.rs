@@ -23,7 +23,7 @@ mod view;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a picture, or the pictures of an animation
-    #[command(after_help = render::EXAMPLES)]
+    #[command(after_help = render::MORE, after_long_help = render::EXAMPLES)]
     Render(Box<crate::args::RenderArgs>),
     /// Walk around in a scene, in a window
     #[cfg(feature = "view")]

@@ -3,7 +3,8 @@
 use crate::console;
 use crate::failure::Failure;
 use crate::format::duration;
-use crate::output::STANDARD_OUTPUT;
+use crate::interrupt::Interrupts;
+use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::{Encoding, Target, effect};
 use clap::Args;
 use juggler::film::{self, Description, Wanted};
@@ -47,6 +48,7 @@ impl Relight {
     /// Mixes the groups anew.
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
+        output::check_stream(&self.output)?;
         let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
         let given = [("--quality", self.quality.is_some()), ("--exposure", self.exposure.is_some())];
         effect::check(Target::Picture(encoding), &given)?;
@@ -62,12 +64,15 @@ impl Relight {
         metadata.push(("Gain".to_owned(), self.gain.clone()));
         let viewpoint = *viewpoint;
         let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
+        let interrupts = Interrupts::watch()?;
         let mut writer = match self.output.as_str() {
             STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
             file => imaging::create(Path::new(file), format, &header)?,
         };
-        merge
-            .rows_of_tiles(|band, tiles, _| Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?))?;
+        merge.rows_of_tiles(|band, tiles, _| {
+            interrupts.check()?;
+            Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?)
+        })?;
         writer.finish()?;
         self.tell(region, start)
     }

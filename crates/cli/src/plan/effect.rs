@@ -59,8 +59,8 @@ pub fn given(args: &RenderArgs, several: bool) -> [Given; 15] {
 
 /// Refuses the first flag that cannot act on the target, and says why.
 pub fn check(target: Target, given: &[Given]) -> Result<(), Failure> {
-    let given = given.iter().filter(|(_, is_given)| *is_given);
-    match given.filter_map(|(flag, _)| obstacle(flag, target)).next() {
+    let mut given = given.iter().filter(|(_, is_given)| *is_given);
+    match given.find_map(|(flag, _)| obstacle(flag, target)) {
         Some(message) => Err(Failure::Wrong(message)),
         None => Ok(()),
     }
@@ -83,7 +83,7 @@ fn of_picture(flag: &str, Encoding { format, options }: Encoding) -> Option<Stri
         }
         "--look" if !format.has_looks() => format!("--look is for levels; a {format} file keeps light as it is"),
         "--tone" | "--exposure" | "--white-balance" if !format.is_tone_mapped() => {
-            format!("{flag} is for PNG, JPEG and WebP pictures and for movies; a {format} file keeps linear light")
+            format!("{flag} is for PNG, JPEG and WebP pictures and for movies; {format} files keep linear light")
         }
         "--dither on" if !is_dithered => {
             format!("{flag} is for pictures of 8 bits without a look; this {format} file is never dithered")
@@ -113,9 +113,7 @@ fn of_part(flag: &str) -> Option<String> {
 fn of_movie(flag: &str, format: AnimationFormat) -> Option<String> {
     Some(match flag {
         "--bits" | "--frame" | "--at" => format!("{flag} is for pictures; this {format} movie has several frames"),
-        "--aov" => {
-            "--aov is for pictures: numbered ones (-o 'frame_####.exr') can have AOVs, a movie has none".into()
-        }
+        "--aov" => "--aov is for pictures: numbered ones (-o 'frame_####.exr') can have AOVs, a movie has none".into(),
         "--dither on" => format!("{flag} is for pictures; frames of a movie are never dithered"),
         "--quality" if !format.has_quality() => {
             format!("--quality is for JPEG and MP4 files; {format} has none")
@@ -161,7 +159,7 @@ pub fn idle_tone(target: Target, tone: &Tone) -> Option<String> {
         return None;
     }
     let have = if names.len() == 1 { "has" } else { "have" };
-    Some(format!("warning: {} {have} no effect: a {format} file keeps linear light", names.join(", ")))
+    Some(format!("warning: {} {have} no effect: {format} files keep linear light", names.join(", ")))
 }
 
 #[cfg(test)]
@@ -183,7 +181,7 @@ mod tests {
             let name = flag.split(' ').next().unwrap();
             for ending in ["exr", "hdr", "pfm"] {
                 let message = refused(&format!("a {flag} -o b.{ending}")).unwrap();
-                assert!(message.starts_with(name) && message.contains(" file "), "{message}");
+                assert!(message.starts_with(name) && message.contains(" file"), "{message}");
             }
             for ending in ["png", "jpg", "webp"] {
                 assert_eq!(refused(&format!("a {flag} -o b.{ending}")), None, "{flag} {ending}");

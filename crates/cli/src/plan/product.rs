@@ -42,9 +42,7 @@ impl Product {
                 let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
                 Ok(Self::Picture(encoding.with_look(args.look)))
             }
-            STANDARD_OUTPUT => {
-                Err(Failure::Wrong("a film part needs a file: it cannot go to standard output".into()))
-            }
+            STANDARD_OUTPUT => Err(Failure::Wrong("a film part needs a file: it cannot go to standard output".into())),
             _ => Ok(Self::Part),
         }
     }
@@ -73,8 +71,9 @@ impl Encoding {
     pub fn new(format: Option<&str>, bits: Option<u8>, quality: Option<u8>, output: &str) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Wrong(message);
         let format = match format {
-            Some(name) => Format::from_path(Path::new(&format!("picture.{name}")))
-                .map_err(|_| wrong(unknown_format(name)))?,
+            Some(name) => {
+                Format::from_path(Path::new(&format!("picture.{name}"))).map_err(|_| wrong(unknown_format(name)))?
+            }
             None if output == STANDARD_OUTPUT => Format::Png,
             None => Format::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
         };

@@ -87,8 +87,7 @@ fn frames_are_shared_in_turns() {
 fn parts_are_known_by_their_ending_and_kept_on_film() {
     assert_eq!(plan("a -o b.jfilm").unwrap().product, Product::Part);
     assert_eq!(plan("a -o b --format jfilm").unwrap().product, Product::Part);
-    for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"]
-    {
+    for line in ["a -o b.jfilm", "a --checkpoint c.jfilm", "a --noise 0.1", "a --time 1", "a --samples-from b.png"] {
         let plan = plan(line).unwrap();
         assert!(plan.needs_film(&plan.shots(1, 1.0).unwrap()[0]), "{line}");
     }
@@ -130,8 +129,7 @@ fn standard_output_holds_one_thing() {
 
 #[test]
 fn flags_that_exclude_each_other() {
-    for line in ["a --frame 1 --at 2", "a --frame 1 --frames 1..2", "a --frames 1..2 --at 1", "a -q --progress bar"]
-    {
+    for line in ["a --frame 1 --at 2", "a --frame 1 --frames 1..2", "a --frames 1..2 --at 1", "a -q --progress bar"] {
         assert!(RenderArgs::of(line.split(' ')).is_err(), "{line}");
     }
 }

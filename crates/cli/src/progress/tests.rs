@@ -2,8 +2,7 @@
 
 use super::*;
 
-const LOOK: Look =
-    Look { fraction: 0.255, rays: 7, rays_per_second: 1.5e6, eta: None, toward: None, course: None };
+const LOOK: Look = Look { fraction: 0.255, rays: 7, rays_per_second: 1.5e6, eta: None, toward: None, course: None };
 
 #[test]
 fn looks_in_words() {
@@ -19,7 +18,10 @@ fn limits_of_time_and_noise_are_told() {
     let toward = Some(Toward::Time(Duration::from_millis(2_600), Duration::from_secs(10)));
     let timed = Look { eta: Some(Duration::from_secs(7)), toward, ..LOOK };
     assert_eq!(timed.words(), " 25.5 %, 3s of 10.0s, 1.50 million rays/s");
-    assert_eq!((timed.json()["elapsed_seconds"].as_f64(), timed.json()["limit_seconds"].as_f64()), (Some(2.6), Some(10.0)));
+    assert_eq!(
+        (timed.json()["elapsed_seconds"].as_f64(), timed.json()["limit_seconds"].as_f64()),
+        (Some(2.6), Some(10.0))
+    );
     let toward = Some(Toward::Noise(Some(0.034), 0.02));
     let noisy = Look { eta: Some(Duration::from_secs(7)), toward, ..LOOK };
     assert_eq!(noisy.words(), " 25.5 %, noise 0.0340, to become 0.02, 1.50 million rays/s, 7s left");

@@ -84,16 +84,18 @@ impl Merge {
         Ok(counts)
     }
 
-    /// Writes one part that holds all that the parts hold. Returns its bytes.
-    pub fn write(&self, path: &Path) -> Result<u64, PartError> {
+    /// Writes one part that holds all that the parts hold. Returns its bytes. An error of `proceed`, which is asked again
+    /// and again, ends it without a file.
+    pub fn write<E: From<PartError>>(&self, path: &Path, proceed: impl Fn() -> Result<(), E>) -> Result<u64, E> {
         let mut writer = PartWriter::create(path, &self.description)?;
         self.bands(|first, tiles| {
             for (number, tile) in (first..).zip(tiles).filter(|(_, tile)| !tile.runs().is_empty()) {
+                proceed()?;
                 writer.add(number, &Chunk::encode(tile, self.description.clamped))?;
             }
-            Ok::<(), PartError>(())
+            Ok::<(), E>(())
         })?;
-        writer.finish()
+        Ok(writer.finish()?)
     }
 
     /// Gathers whole rows of tiles from all parts: the number of the first and the tiles.

@@ -1,6 +1,7 @@
 //! `juggler render`: one picture, or the pictures of an animation.
 
 mod film;
+mod folder;
 mod memory;
 mod reel;
 mod studio;
@@ -16,37 +17,44 @@ use crate::progress::{Course, Goal, Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
+use folder::{Folder, Use};
 use juggler::imaging::{self, AnimationHeader, Format, Header, RowWriter, Tone};
 use juggler::memory::Effort;
 use juggler::scene::Scene;
 use juggler::tracer::film::Rect;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
-use reel::{Encoder, Folder, Use};
+use reel::Encoder;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use studio::Studio;
 
-/// Shown after the help.
+/// Shown after the short help.
+pub const MORE: &str = "\
+`juggler render --help` tells all flags, with examples.";
+
+/// Shown after the whole help.
 pub const EXAMPLES: &str = "\
 Examples:
   juggler render juggler                                     the built-in scene, into juggler.png
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
   juggler render juggler --frames 0..30 -o 'frame_####.png'
-  juggler render juggler -o juggler.mp4                      all frames as a film, also .webp .apng .gif
-  juggler render juggler -o juggler.mp4 --shard 0/3          a third of its frames; without --shard they become the film
+  juggler render juggler -o juggler.mp4                      all frames as a movie, also .webp .apng .gif
+  juggler render juggler -o juggler.mp4 --shard 0/3          a third of its frames; without --shard they become the movie
   juggler render scene.json -o - | display                   the picture to another program
   juggler render scene.json --noise 0.02                     until it is good enough
   juggler render scene.json --checkpoint scene.jfilm         the same command again goes on where it ended
   juggler render scene.json --shard 3/40 -o part3.jfilm      a fortieth of it; `juggler merge` joins them
   juggler info scene.png                                     how that picture was made
 
-Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed, 130 or 143 interrupted.";
+Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed,
+129, 130 or 143 interrupted.";
 
 /// Renders what was asked for.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let plan = Plan::new(args)?;
+    output::check_stream(&plan.output)?;
     Session { reporter: plan.progress.reporter(), plan }.all(start)
 }
 
@@ -205,13 +213,14 @@ impl Session {
             self.tell_left(take.shot)?;
             return Ok(false);
         }
-        let outcome = match self.plan.product {
+        let (outcome, beside) = match self.plan.product {
             Product::Picture(encoding) if !self.plan.needs_film(take.shot) => {
-                self.render(take, encoding.format, &header, interrupts)?
+                (self.render(take, encoding.format, &header, interrupts)?, Ok(()))
             }
             _ => film::render(self, take, header, interrupts)?,
         };
-        self.report(take, &outcome).map(|()| true)
+        self.report(take, &outcome)?;
+        beside.map(|()| true)
     }
 
     fn warn(&self, picture: &Picture) {
