@@ -58,7 +58,7 @@ pub struct ViewArgs {
     pub integrator: Option<String>,
 
     /// Maximum number of mirror and glass bounces (classic) or of path segments (path)
-    #[arg(long, value_name = "N", help_heading = "Picture")]
+    #[arg(long, value_name = "N", help_heading = "Picture", hide_short_help = true)]
     pub max_depth: Option<u32>,
 
     /// One of the scene's cameras
@@ -87,10 +87,10 @@ pub struct ViewArgs {
 /// Flags of `juggler render`.
 #[derive(Clone, Debug, Default, Arguments)]
 pub struct RenderArgs {
-    /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
+    /// A scene file, a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
-    /// Where the picture or movie goes; the ending says the format [default: NAME.png]
+    /// Where the picture or movie goes; the ending says the format
     ///
     /// Pictures are .png .jpg .exr .hdr .webp .pfm, movies .mp4 .webp .apng .gif, parts of pictures .jfilm; `-` is standard
     /// output. The default is the scene's name with .png, in the current folder.
@@ -126,7 +126,7 @@ pub struct RenderArgs {
     pub tone: Option<String>,
 
     /// Stops by which the picture is brightened
-    #[arg(long, value_name = "STOPS", help_heading = "Output")]
+    #[arg(long, value_name = "STOPS", help_heading = "Output", hide_short_help = true)]
     pub exposure: Option<f32>,
 
     /// The light that is to look white, by its color temperature, such as 3200
@@ -152,7 +152,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "LOOK", value_parser = value::look, help_heading = "Output", hide_short_help = true)]
     pub look: Option<Look>,
 
-    /// AOVs beside the picture, with commas between: albedo, normal, depth ... or all
+    /// AOVs beside the picture: albedo,normal,depth ... or all
     ///
     /// light_groups, crypto_object and others; names of Blender, Arnold and V-Ray (Z, N, diffuse_albedo, cryptomatte) are
     /// understood. An EXR holds them itself, another picture has them beside it (NAME.layers.exr).
@@ -170,7 +170,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FILE", help_heading = "Output", hide_short_help = true)]
     pub aov_output: Option<String>,
 
-    /// Write counts, times and the hash of the pixels as JSON; `-` is standard output
+    /// Write counts, times and the hash as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub stats: Option<String>,
 
@@ -241,7 +241,7 @@ pub struct RenderArgs {
     /// Stay within so much memory, such as 4G
     ///
     /// Bands get smaller and threads fewer; what needs more is refused before it is read.
-    #[arg(long, value_name = "SIZE", value_parser = value::memory, help_heading = "Machine")]
+    #[arg(long, value_name = "SIZE", value_parser = value::memory, help_heading = "Machine", hide_short_help = true)]
     pub max_memory: Option<u64>,
 }
 

@@ -41,7 +41,7 @@ pub enum Command {
     /// Write any readable scene as scene JSON
     Convert(convert::Convert),
     /// Say why a pixel is as it is, or which pixels are fireflies and why
-    #[command(after_help = probe::EXAMPLES)]
+    #[command(after_long_help = probe::EXAMPLES)]
     Probe(Box<probe::Probe>),
     /// Say how different two pictures are
     Compare(compare::Compare),

@@ -92,6 +92,7 @@ fn an_interrupted_merge_leaves_nothing() {
     // Larger pictures take a fast machine long enough.
     let interrupted = [700, 2000].into_iter().any(|side| {
         folder.good(&format!("render ball.json --integrator normals --samples 1 --size {side}x{side} -o a.jfilm -q"));
+        let _ = fs::remove_file(folder.path("out.png"));
         let mut command = folder.command("merge a.jfilm -o out.png");
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let begun = || folder.files().len() > 1;
