@@ -32,7 +32,8 @@ impl Args {
         parsed.map_err(tips::mended)
     }
 
-    /// All commands and their flags. A negative number after a flag is the flag's value, to be refused as such.
+    /// All commands and their flags. A negative number after a flag is the flag's value, to be
+    /// refused as such.
     pub fn command_line() -> Command {
         let numbers = |flag: Arg| {
             let takes_value = flag.get_long().is_some() && flag.get_action().takes_values();
@@ -92,8 +93,9 @@ pub struct RenderArgs {
 
     /// Where the picture or movie goes; the ending says the format
     ///
-    /// Pictures are .png .jpg .exr .hdr .webp .pfm, movies .mp4 .webp .apng .gif, parts of pictures .jfilm; `-` is standard
-    /// output. The default is the scene's name with .png, in the current folder.
+    /// Pictures are .png .jpg .exr .hdr .webp .pfm, movies .mp4 .webp .apng .gif, parts of pictures
+    /// .jfilm; `-` is standard output. The default is the scene's name with .png, in the current
+    /// folder.
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Option<String>,
 
@@ -147,26 +149,28 @@ pub struct RenderArgs {
 
     /// A display look of old screens: ham or ham-dithered
     ///
-    /// `ham` is the Amiga's 4,096 colors, held and modified (at home in 320x200), `ham-dithered` the same with what lies
-    /// between them dithered.
+    /// `ham` is the Amiga's 4,096 colors, held and modified (at home in 320x200), `ham-dithered`
+    /// the same with what lies between them dithered.
     #[arg(long, value_name = "LOOK", value_parser = value::look, help_heading = "Output", hide_short_help = true)]
     pub look: Option<Look>,
 
     /// AOVs beside the picture: albedo,normal,depth ... or all
     ///
-    /// light_groups, crypto_object and others; names of Blender, Arnold and V-Ray (Z, N, diffuse_albedo, cryptomatte) are
-    /// understood. An EXR holds them itself, another picture has them beside it (NAME.layers.exr).
+    /// light_groups, crypto_object and others; names of Blender, Arnold and V-Ray (Z, N,
+    /// diffuse_albedo, cryptomatte) are understood. An EXR holds them itself, another picture has
+    /// them beside it (NAME.layers.exr).
     #[arg(long, value_name = "LIST", help_heading = "Output")]
     pub aov: Option<String>,
 
     /// Take the noise out: own (the default) or oidn
     ///
-    /// `own` is the program's filter, the same bits everywhere, `oidn` Intel's Open Image Denoise where it is installed
-    /// (JUGGLER_OIDN may say where).
+    /// `own` is the program's filter, the same bits everywhere, `oidn` Intel's Open Image Denoise
+    /// where it is installed (JUGGLER_OIDN may say where).
     #[arg(long, value_name = "WITH", num_args = 0..=1, default_missing_value = "own", value_parser = value::denoiser, help_heading = "Output")]
     pub denoise: Option<Denoiser>,
 
-    /// Where the AOVs go: one .exr, or one .exr or .npy each where the name holds `{}` for the AOV's
+    /// Where the AOVs go: one .exr, or one .exr or .npy each where the name holds `{}` for the
+    /// AOV's
     #[arg(long, value_name = "FILE", help_heading = "Output", hide_short_help = true)]
     pub aov_output: Option<String>,
 
@@ -187,7 +191,8 @@ pub struct RenderArgs {
 
     /// Stop when the relative error is at most this everywhere, such as 0.02
     ///
-    /// The relative error of every part of the picture, 0.02 being 2 %; `--samples` is then the most.
+    /// The relative error of every part of the picture, 0.02 being 2 %; `--samples` is then the
+    /// most.
     #[arg(long, value_name = "LEVEL", value_parser = value::noise, conflicts_with = "time", help_heading = "Picture")]
     pub noise: Option<f32>,
 
@@ -203,8 +208,8 @@ pub struct RenderArgs {
 
     /// Frames A up to, but without, B, as a movie or as numbered pictures
     ///
-    /// `####` or `%04d` in the name of a picture becomes the number. Pictures that are there, made by the same command from
-    /// the same scene, are left.
+    /// `####` or `%04d` in the name of a picture becomes the number. Pictures that are there, made
+    /// by the same command from the same scene, are left.
     #[arg(long, value_name = "A..B", value_parser = value::frames, conflicts_with_all = ["frame", "at"], help_heading = "Picture")]
     pub frames: Option<FrameRange>,
 
@@ -214,7 +219,8 @@ pub struct RenderArgs {
 
     /// Keep the work in this film part (.jfilm), and go on with what is there
     ///
-    /// Nothing is lost when the render is killed: the same command goes on. A finished picture goes on to more samples.
+    /// Nothing is lost when the render is killed: the same command goes on. A finished picture goes
+    /// on to more samples.
     #[arg(long, value_name = "FILE", help_heading = "Parts")]
     pub checkpoint: Option<String>,
 
@@ -224,9 +230,10 @@ pub struct RenderArgs {
 
     /// Part I of N parts that cost about the same, for `juggler merge`
     ///
-    /// I counts from 0, `auto` takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or HQ_TASK_ID. Of a picture it goes
-    /// into a film part (.jfilm). Of the frames of a movie or of numbered pictures it is every N-th; of a movie, the same
-    /// command without it then makes the movie of them.
+    /// I counts from 0, `auto` takes it from SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or
+    /// HQ_TASK_ID. Of a picture it goes into a film part (.jfilm). Of the frames of a movie or of
+    /// numbered pictures it is every N-th; of a movie, the same command without it then makes the
+    /// movie of them.
     #[arg(long, value_name = "I/N", value_parser = value::shard, help_heading = "Parts")]
     pub shard: Option<Shard>,
 

@@ -4,7 +4,8 @@ use juggler::film::counts::Spread;
 use juggler::tracer::film::Summary;
 use std::time::Duration;
 
-/// `12ms`, `1.21s`, `12.3s`, `9m56s`, `2h03m04s`: three digits up to a minute, from then on whole seconds.
+/// `12ms`, `1.21s`, `12.3s`, `9m56s`, `2h03m04s`: three digits up to a minute, from then on whole
+/// seconds.
 pub fn duration(duration: Duration) -> String {
     match duration.as_secs_f64() {
         seconds if seconds < 0.9995 => format!("{:.0}ms", seconds * 1e3),

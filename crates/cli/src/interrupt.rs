@@ -10,8 +10,8 @@ use signal_hook::iterator::Signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// The signals that end a render in order: Ctrl-C, the end that a system or cluster asks for, and a terminal that
-/// goes away, unless `nohup` has the program outlive that.
+/// The signals that end a render in order: Ctrl-C, the end that a system or cluster asks for, and a
+/// terminal that goes away, unless `nohup` has the program outlive that.
 fn watched() -> Vec<i32> {
     #[allow(unused_mut, reason = "only Unix has a third")]
     let mut signals = vec![SIGINT, SIGTERM];
@@ -22,8 +22,8 @@ fn watched() -> Vec<i32> {
     signals
 }
 
-/// Whether a process that has this status ignores a signal. A status that does not say it counts as one that does:
-/// then the signal keeps the effect that it has.
+/// Whether a process that has this status ignores a signal. A status that does not say it counts as
+/// one that does: then the signal keeps the effect that it has.
 #[cfg(unix)]
 fn is_ignored(status: &str, signal: i32) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -37,7 +37,8 @@ pub struct Interrupts {
 }
 
 impl Interrupts {
-    /// From now on SIGINT, SIGTERM and SIGHUP are remembered; a second one ends the program at once.
+    /// From now on SIGINT, SIGTERM and SIGHUP are remembered; a second one ends the program at
+    /// once.
     pub fn watch() -> Result<Self, Failure> {
         let number = Arc::new(AtomicUsize::new(0));
         let again = Arc::new(AtomicBool::new(false));

@@ -19,8 +19,9 @@ pub fn write_text(output: &str, text: &str) -> Result<(), Failure> {
         .map_err(|error| Failure::file("write", output, &error))
 }
 
-/// The name of a frame's file: a row of `#`, or `%04d` as other programs have it, becomes the number, filled with
-/// zeros; without one, the number comes before the ending, after an underscore, in four digits.
+/// The name of a frame's file: a row of `#`, or `%04d` as other programs have it, becomes the
+/// number, filled with zeros; without one, the number comes before the ending, after an underscore,
+/// in four digits.
 pub fn numbered(name: &str, frame: u32) -> String {
     let (folder, file) = split(name);
     if let Some((place, digits)) = place_of_number(file) {
@@ -44,8 +45,8 @@ fn split(name: &str) -> (&str, &str) {
     name.split_at(name.len().saturating_sub(file.len()))
 }
 
-/// Where in a file's name the number goes, and how many digits it has at least: the last row of `#`, or else the last
-/// `%d`, `%4d` or `%04d`.
+/// Where in a file's name the number goes, and how many digits it has at least: the last row of
+/// `#`, or else the last `%d`, `%4d` or `%04d`.
 fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
     if let Some(last) = file.rfind('#') {
         let start = file.get(..last)?.trim_end_matches('#').len();
@@ -58,7 +59,8 @@ fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
     })
 }
 
-/// Refuses a picture on a terminal: nobody can read its bytes there, and they change how the terminal behaves.
+/// Refuses a picture on a terminal: nobody can read its bytes there, and they change how the
+/// terminal behaves.
 pub fn check_stream(output: &str) -> Result<(), Failure> {
     if output == STANDARD_OUTPUT && std::io::stdout().is_terminal() {
         return Err(Failure::Wrong(
@@ -70,7 +72,8 @@ pub fn check_stream(output: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses a file that cannot be written because a folder on the way is missing: before anything is rendered.
+/// Refuses a file that cannot be written because a folder on the way is missing: before anything is
+/// rendered.
 pub fn check_folder(file: &str) -> Result<(), Failure> {
     match missing_folder(file).filter(|_| file != STANDARD_OUTPUT) {
         Some(_) => Err(Failure::file("write", file, &ErrorKind::NotFound.into())),

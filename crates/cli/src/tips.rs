@@ -1,5 +1,5 @@
-//! What the parser of command lines suggests after a flag that does not exist. The parser's own tips mislead where
-//! another program's flag was typed: these come first.
+//! What the parser of command lines suggests after a flag that does not exist. The parser's own
+//! tips mislead where another program's flag was typed: these come first.
 
 use clap::Error;
 use clap::builder::StyledStr;

@@ -1,6 +1,7 @@
-//! Files that appear whole or not at all: written beside their place, then renamed. A run that fails or is
-//! interrupted leaves what was there before. A file in the making is called `.NAME.part` and locked by the process
-//! that writes it; the next process to write NAME removes one that a killed process has left.
+//! Files that appear whole or not at all: written beside their place, then renamed. A run that
+//! fails or is interrupted leaves what was there before. A file in the making is called
+//! `.NAME.part` and locked by the process that writes it; the next process to write NAME removes
+//! one that a killed process has left.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
@@ -49,7 +50,8 @@ impl AtomicFile {
     }
 }
 
-/// A new file beside its place: `.NAME.part`, or with a random part in its name where another process is writing that.
+/// A new file beside its place: `.NAME.part`, or with a random part in its name where another
+/// process is writing that.
 fn beside(folder: &Path, name: &OsStr, rights: Option<&Permissions>) -> io::Result<NamedTempFile> {
     let mut prefix = std::ffi::OsString::from(".");
     prefix.push(name);
@@ -77,7 +79,8 @@ fn beside(folder: &Path, name: &OsStr, rights: Option<&Permissions>) -> io::Resu
     create(6)
 }
 
-/// Locks a file that was just made, until it is closed. `false` where another process has it or has removed it.
+/// Locks a file that was just made, until it is closed. `false` where another process has it or has
+/// removed it.
 fn is_ours(file: &NamedTempFile) -> bool {
     // Some network disks know no locks: nobody takes anything away there.
     !matches!(file.as_file().try_lock(), Err(fs::TryLockError::WouldBlock)) && is_same(file.as_file(), file.path())

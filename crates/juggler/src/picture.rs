@@ -221,8 +221,8 @@ impl Picture {
         &self.tone
     }
 
-    /// The head of its file; the texts say which program made it, and the fingerprint, seed and samples, if their
-    /// number ends the picture.
+    /// The head of its file; the texts say which program made it, and the fingerprint, seed and
+    /// samples, if their number ends the picture.
     pub fn header(&self, options: Options) -> Header {
         let [width, height] = self.size();
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());

@@ -1,5 +1,6 @@
-//! Which flags can act and which settings have an effect. One rule: a flag that cannot act is refused, a
-//! setting of the scene that has no effect is warned of. Everything that decides it is in this file.
+//! Which flags can act and which settings have an effect. One rule: a flag that cannot act is
+//! refused, a setting of the scene that has no effect is warned of. Everything that decides it is
+//! in this file.
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
@@ -34,7 +35,8 @@ impl Target {
 /// A flag, and whether the command line has it.
 pub type Given = (&'static str, bool);
 
-/// The flags of a render that not every target can obey; `several`: the render makes several frames.
+/// The flags of a render that not every target can obey; `several`: the render makes several
+/// frames.
 pub fn given(args: &RenderArgs, several: bool) -> [Given; 15] {
     [
         ("--bits", args.bits.is_some()),

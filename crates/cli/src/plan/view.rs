@@ -28,8 +28,8 @@ impl ViewArgs {
     }
 }
 
-/// Warns of a frame beyond the end of an animation, which is rendered all the same. A scene of one frame does not say
-/// how long it goes on.
+/// Warns of a frame beyond the end of an animation, which is rendered all the same. A scene of one
+/// frame does not say how long it goes on.
 pub fn beyond_the_end(frame: u32, frames: u32) -> Option<String> {
     (frames > 1 && frame >= frames).then(|| {
         let last = frames - 1;

@@ -222,7 +222,8 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
 #[test]
 fn a_checkpoint_that_cannot_be_written_costs_no_picture() {
     let folder = Folder::new();
-    // The shell's limit on the size of files stands for a full disk: the picture is small, the checkpoint is not.
+    // The shell's limit on the size of files stands for a full disk: the picture is small, the
+    // checkpoint is not.
     let program = env!("CARGO_BIN_EXE_juggler");
     let line = format!(
         "trap '' XFSZ; ulimit -f 40; exec {program} render ball.json --size 96x64 --samples 16 -o a.png --checkpoint a.jfilm"

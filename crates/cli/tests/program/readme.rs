@@ -1,4 +1,5 @@
-//! The console blocks of README.md say what happens: their commands are run, and what they print is compared.
+//! The console blocks of README.md say what happens: their commands are run, and what they print is
+//! compared.
 #![cfg(target_os = "linux")]
 
 use crate::harness::{self, Folder, Run, wait_until};
@@ -40,7 +41,8 @@ fn steps(block: &str) -> impl Iterator<Item = Step> {
     })
 }
 
-/// Starts what is typed into a shell that finds the program; the shell becomes it where nothing else is to be done.
+/// Starts what is typed into a shell that finds the program; the shell becomes it where nothing
+/// else is to be done.
 fn typed(folder: &Folder, line: &str) -> Child {
     let program = Path::new(env!("CARGO_BIN_EXE_juggler")).parent().unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());

@@ -84,8 +84,8 @@ impl Merge {
         Ok(counts)
     }
 
-    /// Writes one part that holds all that the parts hold. Returns its bytes. An error of `proceed`, which is asked again
-    /// and again, ends it without a file.
+    /// Writes one part that holds all that the parts hold. Returns its bytes. An error of
+    /// `proceed`, which is asked again and again, ends it without a file.
     pub fn write<E: From<PartError>>(&self, path: &Path, proceed: impl Fn() -> Result<(), E>) -> Result<u64, E> {
         let mut writer = PartWriter::create(path, &self.description)?;
         self.bands(|first, tiles| {

@@ -1,9 +1,11 @@
-//! AOVs by the names that people know from elsewhere: Blender's passes, Arnold's AOVs, V-Ray's render elements, RenderMan.
+//! AOVs by the names that people know from elsewhere: Blender's passes, Arnold's AOVs, V-Ray's
+//! render elements, RenderMan.
 
 use super::Aov;
 use crate::{Error, check_name};
 
-/// Names of other programs, in lower case with `_` between words, and what is the same here. The picture itself is none.
+/// Names of other programs, in lower case with `_` between words, and what is the same here. The
+/// picture itself is none.
 const FOREIGN: &[(&[&str], &[Aov])] = &[
     (&["beauty", "rgb", "rgba", "combined", "image", "color", "c", "ci", "vraycolor"], &[]),
     (&["cryptomatte", "crypto"], &[Aov::CryptoObject, Aov::CryptoMaterial]),
@@ -46,8 +48,9 @@ const FOREIGN: &[(&[&str], &[Aov])] = &[
 ];
 
 impl Aov {
-    /// The AOVs that a list names: names with commas between, those of other programs too, whatever their case; or
-    /// `all`. Names of the picture itself, such as `beauty`, ask for nothing beside it.
+    /// The AOVs that a list names: names with commas between, those of other programs too, whatever
+    /// their case; or `all`. Names of the picture itself, such as `beauty`, ask for nothing beside
+    /// it.
     pub fn list(text: &str) -> Result<Vec<Self>, Error> {
         if text == "all" {
             return Ok(Self::ALL.to_vec());

@@ -67,12 +67,13 @@ const MOST_LOOKED_AT: usize = 1024;
 pub struct NoiseSoFar {
     /// Largest relative error of a tile, as [`Stop::Noise`] has it.
     pub noise: f64,
-    /// Samples so far over those that will be needed, from 0 to 1, if the variance of samples stays what it is.
+    /// Samples so far over those that will be needed, from 0 to 1, if the variance of samples stays
+    /// what it is.
     pub fraction: f64,
 }
 
-/// How far a film is from a level of noise, estimated from at most 1024 of its tiles, which takes about ten
-/// milliseconds; `None` until each of these has samples enough to tell.
+/// How far a film is from a level of noise, estimated from at most 1024 of its tiles, which takes
+/// about ten milliseconds; `None` until each of these has samples enough to tell.
 pub fn noise_so_far(film: &Film, level: f32) -> Option<NoiseSoFar> {
     let (limit, step) = (f64::from(level) * f64::from(level), film.len().div_ceil(MOST_LOOKED_AT).max(1));
     let (mut worst, mut done, mut needed) = (0.0_f64, 0.0, 0.0);

@@ -284,8 +284,8 @@ impl Exposure<'_> {
         Ok(with_picture)
     }
 
-    /// Writes the AOVs that have a file of their own or none; whether the picture is written too, and what went wrong
-    /// with a file beside the picture.
+    /// Writes the AOVs that have a file of their own or none; whether the picture is written too,
+    /// and what went wrong with a file beside the picture.
     fn write_beside(&self, pixels: Option<&[Rgb]>) -> Result<(bool, Result<(), Failure>), Failure> {
         let Shot { output, layers_output, .. } = self.take.shot;
         match self.write_layers(pixels) {
@@ -295,8 +295,8 @@ impl Exposure<'_> {
         }
     }
 
-    /// Writes the picture or the part; `pixels` are those of the picture where they are not the film's. And what went
-    /// wrong beside it.
+    /// Writes the picture or the part; `pixels` are those of the picture where they are not the
+    /// film's. And what went wrong beside it.
     fn write(&mut self, pixels: Option<&[Rgb]>) -> Result<(Summary, Result<(), Failure>), Failure> {
         let (picture, output) = (self.take.picture, &self.take.shot.output);
         match self.session.plan.product {

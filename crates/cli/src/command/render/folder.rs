@@ -1,5 +1,5 @@
-//! The folder in which the frames of a movie wait until it is complete, and the lock by which processes that make the same
-//! movie know of each other.
+//! The folder in which the frames of a movie wait until it is complete, and the lock by which
+//! processes that make the same movie know of each other.
 
 use super::film::forget;
 use crate::failure::Failure;
@@ -30,8 +30,8 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Makes it where there is none. Another process that makes the same movie may be about to clear it away: then it is
-    /// made anew.
+    /// Makes it where there is none. Another process that makes the same movie may be about to
+    /// clear it away: then it is made anew.
     pub fn open(path: &str, purpose: Use) -> Result<Self, Failure> {
         let patient_until = Instant::now() + PATIENCE;
         loop {
@@ -43,7 +43,8 @@ impl Folder {
         }
     }
 
-    /// The same at once; `None` where the folder is being cleared away or another process has the lock.
+    /// The same at once; `None` where the folder is being cleared away or another process has the
+    /// lock.
     fn locked(path: &str, purpose: Use) -> Result<Option<Self>, Failure> {
         match fs::create_dir(path) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => {
@@ -73,8 +74,8 @@ impl Folder {
         }
     }
 
-    /// Clears away what processes that were killed left of these frames, and the folder unless somebody keeps something
-    /// else in it.
+    /// Clears away what processes that were killed left of these frames, and the folder unless
+    /// somebody keeps something else in it.
     pub fn clear(self, frames: &[PathBuf]) -> Result<(), Failure> {
         for frame in frames {
             fs::remove_file(frame).map_err(|error| Failure::file("remove", frame.display(), &error))?;

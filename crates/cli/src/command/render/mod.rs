@@ -230,7 +230,8 @@ impl Session {
         }
     }
 
-    /// Warns of settings of the scene's tone that the format of the picture ignores, and of frames beyond the end.
+    /// Warns of settings of the scene's tone that the format of the picture ignores, and of frames
+    /// beyond the end.
     fn warn_of_settings(&self, scene: &Scene) {
         let frames = scene.description.animation.frames;
         let last = self.plan.frames(frames).end.saturating_sub(1);
