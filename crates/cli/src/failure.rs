@@ -7,6 +7,8 @@ use juggler::scene::import::{Fault, ImportError};
 use juggler::scene::named::Unknown;
 use juggler::scene::{Problems, SceneError};
 use std::fmt::Display;
+use std::io::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Why the program stops short.
@@ -67,7 +69,11 @@ impl Failure {
 
     /// A file that could not be read or written.
     pub fn file(what: &str, name: impl Display, error: &std::io::Error) -> Self {
-        Self::System(format!("cannot {what} `{name}`: {}", plain(error)))
+        let name = name.to_string();
+        match missing_folder(&name).filter(|_| error.kind() == ErrorKind::NotFound) {
+            Some(folder) => Self::System(format!("cannot {what} `{name}`: there is no folder `{folder}`")),
+            None => Self::System(format!("cannot {what} `{name}`: {}", plain(error))),
+        }
     }
 }
 
@@ -133,7 +139,10 @@ impl From<ResumeError> for Failure {
     fn from(error: ResumeError) -> Self {
         match error {
             ResumeError::Part(error) => error.into(),
-            ResumeError::Foreign { .. } | ResumeError::Beyond { .. } => Self::Wrong(error.to_string()),
+            ResumeError::Foreign { .. } => Self::Wrong(format!(
+                "{error}\nhelp: give another file for --checkpoint, or remove this one to begin anew"
+            )),
+            ResumeError::Beyond { .. } => Self::Wrong(error.to_string()),
             ResumeError::Tile { .. } => Self::System(error.to_string()),
         }
     }
@@ -157,17 +166,23 @@ impl From<Error> for Failure {
     }
 }
 
+/// The first folder on the way to a file that is not there.
+pub fn missing_folder(file: &str) -> Option<String> {
+    let folders: Vec<&Path> = Path::new(file).ancestors().skip(1).filter(|path| !path.as_os_str().is_empty()).collect();
+    folders.into_iter().rev().find(|path| !path.exists()).map(|path| path.display().to_string())
+}
+
 /// The system's error in plain words.
 pub fn plain(error: &std::io::Error) -> String {
     match error.kind() {
-        std::io::ErrorKind::NotFound => "no such file or folder".into(),
-        std::io::ErrorKind::PermissionDenied => "permission denied".into(),
-        std::io::ErrorKind::IsADirectory => "it is a folder".into(),
-        std::io::ErrorKind::NotADirectory => "a part of its path is no folder".into(),
-        std::io::ErrorKind::StorageFull => "no space is left".into(),
-        std::io::ErrorKind::QuotaExceeded => "the quota is used up".into(),
-        std::io::ErrorKind::ReadOnlyFilesystem => "the disk cannot be written to".into(),
-        std::io::ErrorKind::BrokenPipe => "nobody reads it any more".into(),
+        ErrorKind::NotFound => "no such file or folder".into(),
+        ErrorKind::PermissionDenied => "permission denied".into(),
+        ErrorKind::IsADirectory => "it is a folder".into(),
+        ErrorKind::NotADirectory => "a part of its path is no folder".into(),
+        ErrorKind::StorageFull => "no space is left".into(),
+        ErrorKind::QuotaExceeded => "the quota is used up".into(),
+        ErrorKind::ReadOnlyFilesystem => "the disk cannot be written to".into(),
+        ErrorKind::BrokenPipe => "nobody reads it any more".into(),
         _ => error.to_string(),
     }
 }

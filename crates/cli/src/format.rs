@@ -1,20 +1,35 @@
 //! Numbers as people read them.
 
+use juggler::film::counts::Spread;
 use juggler::tracer::film::Summary;
 use std::time::Duration;
 
-/// As the Juggler's ancestors printed it: `1 hour, 2 minutes, 1 second, 5 milliseconds`, without zeros in front.
+/// `12ms`, `1.21s`, `12.3s`, `9m56s`, `2h03m04s`: three digits up to a minute, from then on whole
+/// seconds.
 pub fn duration(duration: Duration) -> String {
-    let seconds = duration.as_secs();
-    let parts = [
-        (u128::from(seconds / 3600), "hour"),
-        (u128::from(seconds / 60 % 60), "minute"),
-        (u128::from(seconds % 60), "second"),
-        (u128::from(duration.subsec_millis()), "millisecond"),
-    ];
-    let first = parts.iter().position(|(count, _)| *count > 0).unwrap_or(parts.len() - 1);
-    let words: Vec<String> = parts.iter().skip(first).map(|(count, unit)| counted(*count, unit)).collect();
-    words.join(", ")
+    match duration.as_secs_f64() {
+        seconds if seconds < 0.9995 => format!("{:.0}ms", seconds * 1e3),
+        seconds if seconds < 9.995 => format!("{seconds:.2}s"),
+        seconds if seconds < 59.95 => format!("{seconds:.1}s"),
+        _ => whole_seconds(duration),
+    }
+}
+
+/// `4s`, `9m56s`, `2h03m04s`: whole seconds in any case.
+pub fn whole_seconds(duration: Duration) -> String {
+    let seconds = duration.as_secs().saturating_add(u64::from(duration.subsec_millis() >= 500));
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    match (hours, minutes) {
+        (0, 0) => format!("{seconds}s"),
+        (0, _) => format!("{minutes}m{seconds:02}s"),
+        _ => format!("{hours}h{minutes:02}m{seconds:02}s"),
+    }
+}
+
+/// `64 samples`, or `16 to 512 samples, 120.5 on average`.
+pub fn samples(spread: &Spread) -> String {
+    let Spread { min, mean, max } = *spread;
+    if min == max { counted(max.into(), "sample") } else { format!("{min} to {max} samples, {mean:.1} on average") }
 }
 
 /// `1 sample`, `2 samples`.
@@ -60,19 +75,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn durations_in_words() {
+    fn durations_are_short() {
         let known = [
-            (0, "0 milliseconds"),
-            (1, "1 millisecond"),
-            (1_005, "1 second, 5 milliseconds"),
-            (61_000, "1 minute, 1 second, 0 milliseconds"),
-            (3_600_000, "1 hour, 0 minutes, 0 seconds, 0 milliseconds"),
-            (7_384_250, "2 hours, 3 minutes, 4 seconds, 250 milliseconds"),
-            (360_000_001, "100 hours, 0 minutes, 0 seconds, 1 millisecond"),
+            (0, "0ms"),
+            (999, "999ms"),
+            (1_005, "1.00s"),
+            (1_210, "1.21s"),
+            (12_340, "12.3s"),
+            (59_940, "59.9s"),
+            (59_960, "1m00s"),
+            (61_000, "1m01s"),
+            (596_400, "9m56s"),
+            (3_599_700, "1h00m00s"),
+            (7_384_250, "2h03m04s"),
+            (360_000_001, "100h00m00s"),
         ];
-        for (milliseconds, words) in known {
-            assert_eq!(duration(Duration::from_millis(milliseconds)), words);
+        for (milliseconds, text) in known {
+            assert_eq!(duration(Duration::from_millis(milliseconds)), text);
         }
+        assert_eq!(whole_seconds(Duration::from_millis(4_400)), "4s");
+    }
+
+    #[test]
+    fn samples_tell_how_they_are_spread() {
+        assert_eq!((samples(&Spread::even(1)), samples(&Spread::even(64))), ("1 sample".into(), "64 samples".into()));
+        let spread = Spread { min: 16, mean: 120.51, max: 512 };
+        assert_eq!(samples(&spread), "16 to 512 samples, 120.5 on average");
     }
 
     #[test]

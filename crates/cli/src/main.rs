@@ -12,6 +12,7 @@ mod progress;
 mod reproduce;
 mod source;
 mod stats;
+mod tips;
 mod value;
 
 use std::process::ExitCode;

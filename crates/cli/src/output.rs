@@ -1,8 +1,10 @@
 //! Where results go: standard output, files, numbered frames.
 
 use crate::console;
-use crate::failure::Failure;
+use crate::failure::{Failure, missing_folder};
 use juggler::imaging::atomic;
+use std::io::{ErrorKind, IsTerminal};
+use std::ops::Range;
 use std::path::Path;
 
 /// The name that means standard output.
@@ -17,21 +19,65 @@ pub fn write_text(output: &str, text: &str) -> Result<(), Failure> {
         .map_err(|error| Failure::file("write", output, &error))
 }
 
-/// The name of a frame's file: a row of `#` becomes the number, filled with zeros; without one, the number
-/// comes before the ending, after an underscore, in four digits.
+/// The name of a frame's file: a row of `#`, or `%04d` as other programs have it, becomes the
+/// number, filled with zeros; without one, the number comes before the ending, after an underscore,
+/// in four digits.
 pub fn numbered(name: &str, frame: u32) -> String {
-    let path = Path::new(name);
-    let file = path.file_name().and_then(|file| file.to_str()).unwrap_or(name);
-    let (folder, file) = name.split_at(name.len() - file.len());
-    if let Some(last) = file.rfind('#') {
-        let head = file.get(..=last).unwrap_or_default();
-        let digits = head.len() - head.trim_end_matches('#').len();
-        let (head, tail) = (head.trim_end_matches('#'), file.get(last + 1..).unwrap_or_default());
-        return format!("{folder}{head}{frame:0digits$}{tail}");
+    let (folder, file) = split(name);
+    if let Some((place, digits)) = place_of_number(file) {
+        let (head, tail) = (file.get(..place.start), file.get(place.end..));
+        return format!("{folder}{}{frame:0digits$}{}", head.unwrap_or_default(), tail.unwrap_or_default());
     }
     match file.rsplit_once('.') {
         Some((stem, ending)) if !stem.is_empty() => format!("{folder}{stem}_{frame:04}.{ending}"),
         _ => format!("{folder}{file}_{frame:04}"),
+    }
+}
+
+/// Whether a name says where the number of a frame goes.
+pub fn has_number(name: &str) -> bool {
+    place_of_number(split(name).1).is_some()
+}
+
+/// Folder, with what divides them, and file.
+fn split(name: &str) -> (&str, &str) {
+    let file = Path::new(name).file_name().and_then(|file| file.to_str()).unwrap_or(name);
+    name.split_at(name.len().saturating_sub(file.len()))
+}
+
+/// Where in a file's name the number goes, and how many digits it has at least: the last row of
+/// `#`, or else the last `%d`, `%4d` or `%04d`.
+fn place_of_number(file: &str) -> Option<(Range<usize>, usize)> {
+    if let Some(last) = file.rfind('#') {
+        let start = file.get(..last)?.trim_end_matches('#').len();
+        return Some((start..last + 1, last + 1 - start));
+    }
+    file.rmatch_indices('%').find_map(|(start, _)| {
+        let (digits, _) = file.get(start + 1..)?.split_once('d')?;
+        let is_width = digits.len() <= 2 && digits.bytes().all(|byte| byte.is_ascii_digit());
+        is_width.then(|| (start..start + digits.len() + 2, digits.parse().unwrap_or(1)))
+    })
+}
+
+/// Refuses a picture on a terminal: nobody can read its bytes there, and they change how the
+/// terminal behaves.
+pub fn check_stream(output: &str) -> Result<(), Failure> {
+    if output == STANDARD_OUTPUT && std::io::stdout().is_terminal() {
+        return Err(Failure::Wrong(
+            "-o - writes the picture to standard output, which is a terminal: give a file (-o picture.png), or send it \
+             to one (> picture.png) or to another program (| display)"
+                .into(),
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a file that cannot be written because a folder on the way is missing: before anything is
+/// rendered.
+pub fn check_folder(file: &str) -> Result<(), Failure> {
+    match missing_folder(file).filter(|_| file != STANDARD_OUTPUT) {
+        Some(_) => Err(Failure::file("write", file, &ErrorKind::NotFound.into())),
+        None => Ok(()),
     }
 }
 
@@ -57,11 +103,19 @@ mod tests {
             ("a.b/juggler.tone.png", "a.b/juggler.tone_0007.png"),
             (".png", ".png_0007"),
             ("é####ü.png", "é0007ü.png"),
+            ("f_%04d.png", "f_0007.png"),
+            ("a%d/f%d.exr", "a%d/f7.exr"),
+            ("%3d.png", "007.png"),
+            ("f_%04d_##.png", "f_%04d_07.png"),
+            ("50%done.png", "507one.png"),
+            ("100%.png", "100%_0007.png"),
+            ("a%xd.png", "a%xd_0007.png"),
         ];
         for (name, numbered_name) in known {
             assert_eq!(numbered(name, 7), numbered_name);
         }
         assert_eq!(numbered("f##.png", 12_345), "f12345.png");
+        assert!(has_number("f_%04d.webp") && has_number("a/f#.webp") && !has_number("a#/f.webp"));
     }
 
     #[test]

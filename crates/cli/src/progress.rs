@@ -1,11 +1,12 @@
 //! How far a render is: read from its [`Control`] by a thread of its own, shown on standard error.
 
 use crate::console;
-use crate::format::{amount, duration};
+use crate::format::{amount, duration, whole_seconds};
 use crate::interrupt::Interrupts;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use juggler::tracer::render::Control;
+use juggler::tracer::film::Film;
+use juggler::tracer::render::{Control, noise_so_far};
 use serde_json::json;
 use std::io::{self, IsTerminal};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -105,26 +106,63 @@ impl Course {
     }
 }
 
+/// When a render will have enough.
+#[derive(Clone, Copy)]
+pub enum Goal<'g> {
+    /// When all pixels together have so many samples.
+    Samples(u64),
+    /// After some time; or before, when all pixels together have so many samples.
+    Time(Duration, u64),
+    /// When a film is this free of noise.
+    Noise(&'g Film, f32),
+}
+
+/// What else than samples a render goes by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Toward {
+    /// Time that has passed, of the time that there is.
+    Time(Duration, Duration),
+    /// The largest relative error of a tile, if it can be told yet, and what it is to become.
+    Noise(Option<f64>, f32),
+}
+
 /// One look at a running render.
 struct Look {
     fraction: f64,
     rays: u64,
     rays_per_second: f64,
     eta: Option<Duration>,
+    toward: Option<Toward>,
     /// The same of all frames, and which one this is.
     course: Option<(Course, Option<Duration>)>,
 }
 
 impl Look {
-    fn at(control: &Control, samples: u64, start: Instant, course: Option<Course>) -> Self {
+    fn at(control: &Control, goal: &Goal, start: Instant, course: Option<Course>) -> Self {
         let now = start.elapsed();
         let seconds = now.as_secs_f64();
-        let fraction = (control.samples() as f64 / samples.max(1) as f64).min(1.0);
         let rays = control.rays().total();
-        let left = seconds * (1.0 - fraction) / fraction;
-        let eta = Duration::try_from_secs_f64(left).ok();
+        let of_samples = |samples: u64| (control.samples() as f64 / samples.max(1) as f64).min(1.0);
+        let left = |fraction: f64| Duration::try_from_secs_f64(seconds * (1.0 - fraction) / fraction).ok();
+        let (fraction, eta, toward) = match *goal {
+            Goal::Samples(samples) => (of_samples(samples), left(of_samples(samples)), None),
+            Goal::Time(limit, samples) => {
+                let of_time = (seconds / limit.as_secs_f64().max(1e-9)).min(1.0);
+                let fraction = of_time.max(of_samples(samples));
+                let eta = limit.saturating_sub(now).min(left(of_samples(samples)).unwrap_or(limit));
+                (fraction, Some(eta), Some(Toward::Time(now, limit)))
+            }
+            Goal::Noise(film, level) => {
+                let so_far = noise_so_far(film, level);
+                let fraction = so_far.map_or(0.0, |so_far| so_far.fraction);
+                // What was there before took no time now.
+                let rest = film.samples() as f64 * (1.0 - fraction) / fraction;
+                let eta = Duration::try_from_secs_f64(seconds * rest / control.samples() as f64).ok();
+                (fraction, eta, Some(Toward::Noise(so_far.map(|so_far| so_far.noise), level)))
+            }
+        };
         let course = course.map(|course| (course, course.left(fraction, now)));
-        Self { fraction, rays, rays_per_second: rays as f64 / seconds.max(1e-9), eta, course }
+        Self { fraction, rays, rays_per_second: rays as f64 / seconds.max(1e-9), eta, toward, course }
     }
 
     /// The share of all frames, or of the only picture.
@@ -133,14 +171,27 @@ impl Look {
     }
 
     fn words(&self) -> String {
-        let eta = self.course.map_or(self.eta, |(_, left)| left);
-        let eta = eta.map(|eta| Duration::from_secs(eta.as_secs_f64().round() as u64));
-        let eta = eta.filter(|eta| !eta.is_zero());
-        let eta = eta.map(|eta| format!(", {} left", duration(eta).replace(", 0 milliseconds", "")));
-        let percent = self.fraction * 100.0;
         let frame = self.course.map(|(course, _)| format!("frame {} of {}, ", course.number, course.of));
+        let percent = self.whole() * 100.0;
+        let toward = match self.toward {
+            None => String::new(),
+            Some(Toward::Time(now, limit)) => format!(", {} of {}", whole_seconds(now), duration(limit)),
+            Some(Toward::Noise(None, level)) => format!(", noise not known yet, to become {level}"),
+            Some(Toward::Noise(Some(noise), level)) => format!(", noise {noise:.4}, to become {level}"),
+        };
         let rate = amount(self.rays_per_second);
-        format!("{}{percent:5.1} %, {rate} rays/s{}", frame.unwrap_or_default(), eta.unwrap_or_default())
+        format!("{}{percent:5.1} %{toward}, {rate} rays/s{}", frame.unwrap_or_default(), self.left_in_words())
+    }
+
+    /// How long all frames, or the only picture, will take, unless that is told already.
+    fn left_in_words(&self) -> String {
+        let left = match (self.course, self.toward) {
+            (Some((_, left)), _) => left,
+            (None, Some(Toward::Time(..))) => None,
+            (None, _) => self.eta,
+        };
+        let left = left.filter(|left| left.as_secs_f64() >= 0.5);
+        left.map(|left| format!(", {} left", whole_seconds(left))).unwrap_or_default()
     }
 
     /// For programs; what several frames add comes last.
@@ -150,6 +201,17 @@ impl Look {
             "event": "progress", "fraction": self.fraction, "rays": self.rays,
             "rays_per_second": self.rays_per_second, "eta_seconds": seconds(self.eta),
         });
+        match self.toward {
+            None => {}
+            Some(Toward::Time(now, limit)) => {
+                event["elapsed_seconds"] = now.as_secs_f64().into();
+                event["limit_seconds"] = limit.as_secs_f64().into();
+            }
+            Some(Toward::Noise(noise, level)) => {
+                event["noise"] = noise.into();
+                event["noise_limit"] = f64::from(level).into();
+            }
+        }
         if let Some((course, left)) = self.course {
             event["frame"] = course.number.into();
             event["frames"] = course.of.into();
@@ -161,8 +223,8 @@ impl Look {
 }
 
 impl Reporter {
-    /// Says that a picture begins.
-    pub fn start(&self, name: &str, size: [u32; 2], samples: u32, course: Option<Course>) {
+    /// Says that a picture begins; `samples` are those of a pixel, where that is known.
+    pub fn start(&self, name: &str, size: [u32; 2], samples: Option<u32>, course: Option<Course>) {
         match self {
             Self::Bar(bar) => {
                 bar.set_prefix(format!("{name} "));
@@ -210,8 +272,13 @@ impl Reporter {
         }
     }
 
-    fn ticks(&self) -> u32 {
-        if matches!(self, Self::Bar(_)) { TICKS.0 } else { TICKS.1 }
+    /// From one report to the next; noise takes long to tell.
+    fn ticks(&self, goal: &Goal) -> Option<u32> {
+        match self {
+            Self::Nothing => None,
+            Self::Bar(_) if !matches!(goal, Goal::Noise(..)) => Some(TICKS.0),
+            Self::Bar(_) | Self::Lines | Self::Json => Some(TICKS.1),
+        }
     }
 }
 
@@ -227,10 +294,8 @@ pub struct Watch<'w> {
     pub interrupts: &'w Interrupts,
     /// The render.
     pub control: &'w Control,
-    /// Samples that it is to take, over all pixels.
-    pub samples: u64,
-    /// How long it may take before it is asked to finish.
-    pub time: Option<Duration>,
+    /// When it has enough. One that goes by time is asked to finish then.
+    pub goal: Goal<'w>,
     /// Where it stands among several frames.
     pub course: Option<Course>,
 }
@@ -241,18 +306,18 @@ pub fn watched<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
         let (running, ended) = mpsc::channel::<()>();
         scope.spawn(move || {
             let start = Instant::now();
-            let mut ticks = 0;
-            let Watch { reporter, interrupts, control, samples, time, course } = *watch;
+            let mut ticks = 0_u32;
+            let Watch { reporter, interrupts, control, goal, course } = *watch;
             while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
                 ticks += 1;
                 if interrupts.caught().is_some() {
                     control.cancel();
                 }
-                if time.is_some_and(|time| start.elapsed() >= time) {
+                if matches!(goal, Goal::Time(limit, _) if start.elapsed() >= limit) {
                     control.finish();
                 }
-                if ticks % reporter.ticks() == 0 {
-                    reporter.report(&Look::at(control, samples, start, course));
+                if reporter.ticks(&goal).is_some_and(|each| ticks.is_multiple_of(each)) {
+                    reporter.report(&Look::at(control, &goal, start, course));
                 }
             }
         });
@@ -263,38 +328,4 @@ pub fn watched<T>(watch: &Watch, work: impl FnOnce() -> T) -> T {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn looks_in_words() {
-        let eta = Some(Duration::from_millis(61_400));
-        let look = Look { fraction: 0.255, rays: 7, rays_per_second: 1.5e6, eta, course: None };
-        assert_eq!(look.words(), " 25.5 %, 1.50 million rays/s, 1 minute, 1 second left");
-        let last = Look { fraction: 0.999, eta: Some(Duration::from_millis(4)), ..look };
-        assert_eq!(last.words(), " 99.9 %, 1.50 million rays/s");
-        let unknown = Look { fraction: 0.0, rays: 0, rays_per_second: 0.0, eta: None, course: None };
-        assert_eq!(unknown.words(), "  0.0 %, 0 rays/s");
-    }
-
-    #[test]
-    fn frames_have_their_time_together() {
-        let second = Course::new(4).after(Some(Duration::from_secs(10)));
-        assert_eq!(second.left(0.5, Duration::from_secs(5)), Some(Duration::from_secs(25)));
-        assert_eq!(second.fraction(0.5), 0.375);
-        // What was there already tells nothing of how long the others take.
-        let third = second.after(None);
-        assert_eq!((third.number, third.left(0.5, Duration::from_secs(5))), (3, Some(Duration::from_secs(15))));
-        assert_eq!(Course::new(4).left(0.0, Duration::ZERO), None);
-        let course = Some((second, Some(Duration::from_secs(25))));
-        let look = Look { fraction: 0.5, rays: 7, rays_per_second: 1.5e6, eta: None, course };
-        assert_eq!(look.words(), "frame 2 of 4,  50.0 %, 1.50 million rays/s, 25 seconds left");
-        assert_eq!((look.whole(), look.json()["film_eta_seconds"].as_f64()), (0.375, Some(25.0)));
-    }
-
-    #[test]
-    fn nothing_rendered_is_nothing_known() {
-        let look = Look::at(&Control::default(), 100, Instant::now(), None);
-        assert!(look.fraction == 0.0 && look.eta.is_none());
-    }
-}
+mod tests;

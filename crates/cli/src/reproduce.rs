@@ -9,6 +9,8 @@ use std::fmt::Display;
 
 /// In a command, the file that carries it.
 const THIS_FILE: &str = "{this file}";
+/// The text of a picture that says how many samples a pixel got.
+pub const SAMPLES: &str = "Samples";
 /// The text of a picture that says how many samples each of its tiles got.
 pub const SAMPLES_PER_TILE: &str = "Samples per tile";
 

@@ -1,9 +1,10 @@
 //! `--stats`: one JSON object about a render, with the keys that other people's scripts read.
 
+use juggler::film::counts::Spread;
 use juggler::imaging::Viewpoint;
 use juggler::tracer::film::Summary;
 use juggler::tracer::render::Rays;
-use juggler::{Outcome, Picture};
+use juggler::{Limit, Outcome, Picture};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -13,7 +14,11 @@ pub struct Stats<'s> {
     version: u32,
     scene: &'s str,
     size: [u32; 2],
+    /// Of a pixel, or the most of them.
     samples: u32,
+    /// Where noise or time ends the picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    samples_per_pixel: Option<Spread>,
     threads: usize,
     integrator: &'s str,
     seconds: Seconds,
@@ -104,7 +109,8 @@ impl<'s> Stats<'s> {
             version: 1,
             scene,
             size: picture.size(),
-            samples: picture.samples(),
+            samples: outcome.samples.max,
+            samples_per_pixel: (*picture.limit() != Limit::Samples).then_some(outcome.samples),
             threads,
             integrator: picture.compiled().settings.integrator.name(),
             seconds,

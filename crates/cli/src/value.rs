@@ -3,7 +3,7 @@
 use juggler::Denoiser;
 use juggler::imaging::animation::PACES;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
-use juggler::scene::compile::MAX_SHUTTER;
+use juggler::scene::compile::{MAX_PIXELS, MAX_SHUTTER};
 use juggler::tracer::film::{BLOCK, Rect};
 use std::ops::Range;
 use std::time::Duration;
@@ -29,7 +29,11 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
         }
         Err(_) => Err(wrong()),
     };
-    Ok([edge(width)?, edge(height)?])
+    let [width, height] = [edge(width)?, edge(height)?];
+    match u64::from(width) * u64::from(height) {
+        pixels if pixels > MAX_PIXELS => Err(format!("these are {pixels} pixels; at most {MAX_PIXELS} are allowed")),
+        _ => Ok([width, height]),
+    }
 }
 
 /// `10,20,320,200`: left, top, width and height in pixels.
@@ -240,6 +244,8 @@ mod tests {
         for wrong in ["", "640", "640x", "x360", "640x360x2", "-1x5", "6.5x2", "640 x 360"] {
             assert!(size(wrong).is_err_and(|e| e.contains("such as 640x360")), "{wrong}");
         }
+        assert!(size("65536x65536").is_err_and(|e| e.contains("4294967296 pixels; at most 2147483648")));
+        assert_eq!(size("32768x65536"), Ok([32_768, 65_536]));
         for wrong in ["0x5", "5x0", "65537x1", "99999999999x1"] {
             assert!(size(wrong).is_err_and(|e| e.contains("1 to 65536")), "{wrong}");
         }

@@ -34,7 +34,7 @@ pub enum ResumeError {
     #[error(transparent)]
     Part(#[from] PartError),
     /// It is of another picture.
-    #[error("{file}: is of another picture: {differences}")]
+    #[error("{file}: holds the work on another picture: {differences}")]
     Foreign {
         /// The file.
         file: String,
@@ -120,7 +120,12 @@ pub fn resume(part: &Part, goal: &Description, film: &Film) -> Result<(), Resume
         .map(ToString::to_string)
         .collect();
     if !differences.is_empty() {
-        return Err(ResumeError::Foreign { file: file(), differences: differences.join("; ") });
+        let differences = if found.scene == goal.scene {
+            differences.join("; ")
+        } else {
+            format!("of the scene `{}`, not `{}`", found.scene, goal.scene)
+        };
+        return Err(ResumeError::Foreign { file: file(), differences });
     }
     let beyond = |what: String| ResumeError::Beyond { file: file(), what };
     check_stop(found.stop, goal.stop).map_err(&beyond)?;
@@ -210,6 +215,9 @@ mod tests {
         other.frame = 3.0;
         let refused = resume(&part, &other, &film(64)).unwrap_err().to_string();
         assert!(refused.contains("seed: 7 instead of 8") && refused.contains("frame: 2.4"), "{refused}");
+        other.scene = "juggler".into();
+        let refused = resume(&part, &other, &film(64)).unwrap_err().to_string();
+        assert!(refused.contains("of the scene `") && refused.contains("not `juggler`"), "{refused}");
         let small = Film::of(Layout::new(REGION), [(0, 0..64)]);
         let refused = resume(&part, &description(REGION, 64), &small).unwrap_err().to_string();
         assert!(refused.contains("tile 1"), "{refused}");

@@ -3,7 +3,7 @@
 //! - [`checkpoint`]: work kept while it is done, and gone on with;
 //! - [`part`]: the container `.jfilm`, any part of a picture with all that is known of it, every byte under a hash;
 //!   `README.md` of this crate describes it byte by byte;
-//! - [`counts`]: how many samples each tile got, as a text;
+//! - [`counts`]: how many samples each tile got, as a text, and how many that is per pixel;
 //! - [`share`]: how one picture, or a range of frames, is cut into parts that cost about the same;
 //! - [`mod@merge`]: parts that belong together become one picture, or one part, with the bits of a single render.
 

@@ -1,6 +1,9 @@
-//! Files that appear whole or not at all: written beside their place, then renamed. A run that fails or is
-//! interrupted leaves what was there before.
+//! Files that appear whole or not at all: written beside their place, then renamed. A run that
+//! fails or is interrupted leaves what was there before. A file in the making is called
+//! `.NAME.part` and locked by the process that writes it; the next process to write NAME removes
+//! one that a killed process has left.
 
+use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -23,17 +26,10 @@ impl AtomicFile {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
         let folder = place.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(name);
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(".part");
         // A new file gets the rights that any new file gets, not the narrow ones of temporary files.
         let rights = existing.map(|m| m.permissions()).or_else(usual_rights);
-        if let Some(rights) = rights {
-            builder.permissions(rights);
-        }
         // The system's reason alone: the temporary name is of no use to anybody.
-        let temporary = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
+        let temporary = beside(folder, name, rights.as_ref()).map_err(|error| io::Error::from(error.kind()))?;
         Ok(Self { temporary, place })
     }
 
@@ -52,6 +48,63 @@ impl AtomicFile {
         self.temporary.as_file().sync_all()?;
         self.commit()
     }
+}
+
+/// A new file beside its place: `.NAME.part`, or with a random part in its name where another
+/// process is writing that.
+fn beside(folder: &Path, name: &OsStr, rights: Option<&Permissions>) -> io::Result<NamedTempFile> {
+    let mut prefix = std::ffi::OsString::from(".");
+    prefix.push(name);
+    let create = |random: usize| {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix).suffix(".part").rand_bytes(random);
+        if let Some(rights) = rights {
+            builder.permissions(rights.clone());
+        }
+        builder.tempfile_in(folder)
+    };
+    let mut usual = prefix.clone();
+    usual.push(".part");
+    let usual = folder.join(usual);
+    for _ in 0..2 {
+        match create(0) {
+            Ok(file) if is_ours(&file) => return Ok(file),
+            // Another process took it for one that was left.
+            Ok(file) => drop(file.keep()),
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
+            Err(_) if remove_abandoned(&usual) => {}
+            Err(_) => break,
+        }
+    }
+    create(6)
+}
+
+/// Locks a file that was just made, until it is closed. `false` where another process has it or has
+/// removed it.
+fn is_ours(file: &NamedTempFile) -> bool {
+    // Some network disks know no locks: nobody takes anything away there.
+    !matches!(file.as_file().try_lock(), Err(fs::TryLockError::WouldBlock)) && is_same(file.as_file(), file.path())
+}
+
+/// Removes a file that no process has locked; whether it did.
+fn remove_abandoned(path: &Path) -> bool {
+    let is_file = fs::symlink_metadata(path).is_ok_and(|file| file.is_file());
+    let Some(file) = is_file.then(|| File::open(path).ok()).flatten() else { return false };
+    file.try_lock().is_ok() && is_same(&file, path) && fs::remove_file(path).is_ok()
+}
+
+/// Whether the file of that name is this one.
+#[cfg(unix)]
+fn is_same(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let (here, there) = (file.metadata(), fs::symlink_metadata(path));
+    here.is_ok_and(|here| there.is_ok_and(|there| (here.dev(), here.ino()) == (there.dev(), there.ino())))
+}
+
+/// An open file cannot be removed there.
+#[cfg(not(unix))]
+fn is_same(_file: &File, _path: &Path) -> bool {
+    true
 }
 
 #[cfg(unix)]
@@ -113,6 +166,44 @@ mod tests {
         assert_eq!(names(folder.path()).len(), 1);
         drop(file);
         assert_eq!(names(folder.path()), [""; 0]);
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_cleared_away() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("a.txt");
+        // Nobody has it locked: whoever wrote it is gone.
+        fs::write(folder.path().join(".a.txt.part"), "half").unwrap();
+        fs::write(folder.path().join(".b.txt.part"), "not ours").unwrap();
+        write(&place, b"whole").unwrap();
+        assert_eq!(fs::read_to_string(&place).unwrap(), "whole");
+        assert_eq!(names(folder.path()), [".b.txt.part", "a.txt"]);
+    }
+
+    #[test]
+    fn what_another_writes_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("a.txt");
+        let (first, second) = (AtomicFile::create(&place).unwrap(), AtomicFile::create(&place).unwrap());
+        assert_eq!(names(folder.path()).len(), 2);
+        first.handle().unwrap().write_all(b"first").unwrap();
+        second.handle().unwrap().write_all(b"second").unwrap();
+        second.commit().unwrap();
+        assert_eq!(fs::read_to_string(&place).unwrap(), "second");
+        first.commit().unwrap();
+        assert_eq!(fs::read_to_string(&place).unwrap(), "first");
+        assert_eq!(names(folder.path()), ["a.txt"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_of_that_name_is_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("theirs"), "theirs").unwrap();
+        std::os::unix::fs::symlink("theirs", folder.path().join(".a.txt.part")).unwrap();
+        write(&folder.path().join("a.txt"), b"ours").unwrap();
+        assert_eq!(fs::read_to_string(folder.path().join("theirs")).unwrap(), "theirs");
+        assert_eq!(fs::read_to_string(folder.path().join("a.txt")).unwrap(), "ours");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod cryptomatte;
 mod values;
+mod words;
 
 use crate::{Denoiser, Error, check_name};
 use juggler_film::part::Layered;
@@ -120,7 +121,7 @@ impl Aov {
 
     /// The one of that name; an error says which was probably meant.
     pub fn by_name(name: &str) -> Result<Self, Error> {
-        check_name("layer", name, Self::ALL.iter().map(|aov| aov.name()))?;
+        check_name("AOV", name, Self::ALL.iter().map(|aov| aov.name()))?;
         // It is one of them.
         Ok(Self::ALL.into_iter().find(|aov| aov.name() == name).unwrap_or(Self::Alpha))
     }

@@ -2,6 +2,7 @@
 
 use crate::frames::FramesBeside;
 use crate::{Error, LayerSet, Limit, Settings};
+use juggler_film::counts::Spread;
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
 use juggler_scene::description::Render;
@@ -50,6 +51,8 @@ pub struct View {
 pub struct Outcome {
     /// Hash and mean of the linear pixels.
     pub film: Summary,
+    /// Samples per pixel.
+    pub samples: Spread,
     /// Rays traced.
     pub rays: Rays,
     /// Time spent on tracing rays.
@@ -218,7 +221,8 @@ impl Picture {
         &self.tone
     }
 
-    /// The head of its file; the texts say which program made it, and the fingerprint, seed and samples.
+    /// The head of its file; the texts say which program made it, and the fingerprint, seed and
+    /// samples, if their number ends the picture.
     pub fn header(&self, options: Options) -> Header {
         let [width, height] = self.size();
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
@@ -226,8 +230,11 @@ impl Picture {
             text("Software", SOFTWARE),
             text("Fingerprint", &self.fingerprint.hash()),
             text("Seed", &self.compiled.settings.seed.to_string()),
-            text("Samples", &self.samples().to_string()),
         ];
+        // How many samples noise or time will allow is known in the end.
+        if self.limit == Limit::Samples {
+            metadata.push(text("Samples", &self.samples().to_string()));
+        }
         if let Some(Clamp { direct, indirect }) = self.compiled.settings.integrator.clamp() {
             let limits =
                 [("direct", direct), ("indirect", indirect)].into_iter().filter(|(_, limit)| limit.is_finite());
@@ -307,7 +314,8 @@ impl Picture {
         let finish = Instant::now();
         writer.finish()?;
         let (denoise, write) = (Duration::ZERO, write + finish.elapsed());
-        Ok(Outcome { film, rays: control.rays(), render, denoise, write })
+        let samples = Spread::even(self.samples());
+        Ok(Outcome { film, samples, rays: control.rays(), render, denoise, write })
     }
 
     /// Renders into memory.

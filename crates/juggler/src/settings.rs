@@ -70,7 +70,8 @@ pub struct Settings {
     pub integrator: Option<String>,
     /// Name of a sampler; the scene's own numbers are kept likewise.
     pub sampler: Option<String>,
-    /// How often a path may be mirrored or refracted.
+    /// Maximum number of mirror and glass bounces under the integrator `classic`, 0 to 1000, and of
+    /// path segments under `path`, 1 to 10,000.
     pub max_depth: Option<u32>,
     /// Name of one of the scene's cameras.
     pub camera: Option<String>,
@@ -158,21 +159,28 @@ impl Settings {
     }
 }
 
+/// Sets the depth of an integrator that has one, within what the scene format allows.
 fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> {
-    match integrator {
-        AnyIntegrator::Classic(classic) => classic.max_depth = depth,
+    let (place, range) = match integrator {
+        AnyIntegrator::Classic(classic) => (&mut classic.max_depth, 0..=1000),
+        AnyIntegrator::Path(path) => (&mut path.max_depth, 1..=10_000),
         other => {
             let name = other.name();
             return Err(Error::Settings(format!("the integrator `{name}` follows no path whose depth has a limit")));
         }
+    };
+    if !range.contains(&depth) {
+        let (least, most) = (range.start(), range.end());
+        return Err(Error::Settings(format!("a depth of {depth} is none of {least} to {most}")));
     }
+    *place = depth;
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_tracer::integrator::{Classic, Normals};
+    use juggler_tracer::integrator::{Classic, Normals, Path};
 
     fn scene() -> Scene {
         let mut scene = Scene::new().size(20, 10);
@@ -195,6 +203,19 @@ mod tests {
         assert_eq!(scene.description.render.integrator, Normals::default().into());
         let deep = Settings { max_depth: Some(3), ..other };
         assert!(deep.apply(&scene).unwrap_err().to_string().contains("normals"));
+    }
+
+    #[test]
+    fn depths_are_those_of_the_integrator() {
+        let apply = |integrator: &str, depth| {
+            let wish = Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
+            wish.apply(&scene()).map(|scene| scene.description.render.integrator)
+        };
+        assert_eq!(apply("path", 4).unwrap(), Path { max_depth: 4, ..Path::default() }.into());
+        assert!(apply("classic", 0).is_ok() && apply("path", 10_000).is_ok());
+        for (integrator, depth) in [("path", 0), ("path", 10_001), ("classic", 1001)] {
+            assert!(apply(integrator, depth).unwrap_err().to_string().contains(" to 10"), "{integrator} {depth}");
+        }
     }
 
     #[test]

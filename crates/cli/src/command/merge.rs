@@ -2,14 +2,19 @@
 
 use crate::console;
 use crate::failure::Failure;
-use crate::format::{bytes, clamping, counted, duration};
+use crate::format::{bytes, clamping, counted, duration, samples};
+use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
+use crate::plan::effect::{self, Given};
 use crate::plan::layers::{self, Place};
-use crate::plan::{Encoding, PART_ENDING};
+use crate::plan::{Encoding, PART_ENDING, Target};
+use crate::progress::{Goal, Reporter, Watch, watched};
+use crate::reproduce::SAMPLES;
 use crate::stats::{self, Clamped};
 use clap::Args;
 use juggler::denoise::Guides;
-use juggler::film::{self, Description, Wanted};
+use juggler::film::counts::Spread;
+use juggler::film::{self, Description, Stop, Wanted};
 use juggler::imaging::layered::LayeredWriter;
 use juggler::imaging::{self, Header, Tone};
 use juggler::math::Rgb;
@@ -52,21 +57,40 @@ pub struct Merge {
 
 /// What was made.
 enum Made {
-    Picture(Summary),
+    /// A picture, and its samples per pixel where noise or time ended it.
+    Picture(Summary, Option<Spread>),
+    /// A part of so many bytes.
     Part(u64),
 }
 
 /// The pixels of the picture that the parts make, without noise.
-fn denoised(merge: &film::Merge, set: &LayerSet, denoiser: Denoiser) -> Result<Vec<Rgb>, Failure> {
+fn denoised(
+    merge: &film::Merge,
+    set: &LayerSet,
+    denoiser: Denoiser,
+    interrupts: &Interrupts,
+) -> Result<Vec<Rgb>, Failure> {
     let mut guides = Guides::new(merge.description().region);
     merge.rows_of_tiles(|_, tiles, _| {
+        interrupts.check()?;
         tiles.iter().for_each(|tile| guides.add(set, tile));
         Ok::<(), Failure>(())
     })?;
     let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
-    // Nobody cancels it.
-    let denoised = guides.denoise(denoiser, library.as_deref(), &Control::default())?;
+    let control = Control::default();
+    let watch =
+        Watch { reporter: &Reporter::Nothing, interrupts, control: &control, goal: Goal::Samples(0), course: None };
+    let denoised = watched(&watch, || guides.denoise(denoiser, library.as_deref(), &control))?;
+    interrupts.check()?;
     Ok(denoised.map(|denoised| denoised.pixels).unwrap_or_default())
+}
+
+/// The samples per pixel of a picture that noise or time ended.
+fn spread(merge: &film::Merge) -> Result<Option<Spread>, Failure> {
+    if merge.description().stop == Stop::Samples {
+        return Ok(None);
+    }
+    Ok(Some(Spread::of_counts(&merge.description().layout(), &merge.counts()?)))
 }
 
 impl Merge {
@@ -74,36 +98,55 @@ impl Merge {
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
         output::at_most_one_stream(&self.output, self.stats.as_deref())?;
+        output::check_stream(&self.output)?;
         let is_part =
             Path::new(&self.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING));
         let (merge, made) = if is_part {
-            self.check_part_flags()?;
+            effect::check(Target::Part, &self.given())?;
             let merge = film::Merge::open(&self.parts, Wanted::Part)?;
-            let made = Made::Part(merge.write(Path::new(&self.output))?);
+            let interrupts = Interrupts::watch()?;
+            let made = Made::Part(merge.write(Path::new(&self.output), || interrupts.check())?);
             (merge, made)
         } else {
             let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+            effect::check(Target::Picture(encoding), &self.given())?;
             let merge = film::Merge::open(&self.parts, Wanted::Whole)?;
-            let made = Made::Picture(self.picture(&merge, encoding)?);
+            let spread = spread(&merge)?;
+            let interrupts = Interrupts::watch()?;
+            let made = Made::Picture(self.picture(&merge, encoding, spread, &interrupts)?, spread);
             (merge, made)
         };
         self.report(merge.description(), &made, start)
     }
 
-    fn check_part_flags(&self) -> Result<(), Failure> {
-        if self.format.is_some() || self.bits.is_some() || self.quality.is_some() {
-            return Err(Failure::Wrong(
-                "--format, --bits and --quality are for pictures; a part keeps everything".into(),
-            ));
-        }
-        Ok(())
+    /// Flags that not every target can obey.
+    fn given(&self) -> [Given; 4] {
+        [
+            ("--format", self.format.is_some()),
+            ("--bits", self.bits.is_some()),
+            ("--quality", self.quality.is_some()),
+            ("--aov-output", self.aov_output.is_some()),
+        ]
     }
 
-    fn picture(&self, merge: &film::Merge, Encoding { format, options }: Encoding) -> Result<Summary, Failure> {
+    fn picture(
+        &self,
+        merge: &film::Merge,
+        encoding: Encoding,
+        spread: Option<Spread>,
+        interrupts: &Interrupts,
+    ) -> Result<Summary, Failure> {
+        let Encoding { format, options } = encoding;
         let Description { region, tone, metadata, viewpoint, .. } = merge.description();
-        let (metadata, viewpoint) = (metadata.clone(), *viewpoint);
+        let (mut metadata, viewpoint) = (metadata.clone(), *viewpoint);
+        if let Some(spread) = spread {
+            metadata.push((SAMPLES.to_owned(), spread.to_string()));
+        }
         let tone: Tone = serde_json::from_value(tone.clone())
             .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
+        if let Some(warning) = effect::idle_tone(Target::Picture(encoding), &tone).filter(|_| !self.quiet) {
+            console::say(&warning);
+        }
         let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
         let set = LayerSet::of_part(&merge.description().layers)?;
         let mut layers = self.layers(&set, &header)?;
@@ -113,9 +156,10 @@ impl Merge {
             STANDARD_OUTPUT => Some(imaging::to_standard_output(format, &header)?),
             file => Some(imaging::create(Path::new(file), format, &header)?),
         };
-        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser)).transpose()?;
+        let denoised = set.denoiser().map(|denoiser| denoised(merge, &set, denoiser, interrupts)).transpose()?;
         let mut rest = denoised.as_deref();
         let summary = merge.rows_of_tiles(|band, tiles, rows| {
+            interrupts.check()?;
             let rows = rest.as_mut().and_then(|rest| rest.split_off(..rows.len())).unwrap_or(rows);
             if let Some((writer, with_picture)) = &mut layers {
                 writer.write_rows(&set.band(band, tiles, with_picture.then_some(rows)))?;
@@ -161,10 +205,10 @@ impl Merge {
         }
         let [width, height] = [picture.region.width, picture.region.height];
         let what = match made {
-            Made::Picture(film) if picture.clamped => {
-                format!("{}, {}", counted(picture.samples.into(), "sample"), clamping(film))
+            Made::Picture(film, spread) => {
+                let samples = samples(&spread.unwrap_or(Spread::even(picture.samples)));
+                if picture.clamped { format!("{samples}, {}", clamping(film)) } else { samples }
             }
-            Made::Picture(_) => counted(picture.samples.into(), "sample"),
             Made::Part(length) if picture.finished => format!("whole, {}", bytes(*length)),
             Made::Part(length) => format!("not all of it, {}", bytes(*length)),
         };
@@ -180,23 +224,27 @@ impl Merge {
     /// The keys have the meaning that they have for a render.
     fn to_json(&self, picture: &Description, made: &Made, seconds: f64) -> String {
         let film = match made {
-            Made::Picture(film) if picture.clamped => {
+            Made::Picture(film, _) if picture.clamped => {
                 json!({"mean": film.mean, "hash": film.hash, "clamped": Clamped::of(film)})
             }
-            Made::Picture(Summary { hash, mean, .. }) => json!({"mean": mean, "hash": hash}),
+            Made::Picture(Summary { hash, mean, .. }, _) => json!({"mean": mean, "hash": hash}),
             Made::Part(_) => serde_json::Value::Null,
         };
-        json!({
+        let spread = if let Made::Picture(_, spread) = made { *spread } else { None };
+        let mut json = json!({
             "version": 1,
             "scene": picture.scene,
             "size": [picture.region.width, picture.region.height],
-            "samples": picture.samples,
+            "samples": spread.map_or(picture.samples, |spread| spread.max),
             "finished": picture.finished,
             "camera": stats::camera(picture.viewpoint.as_ref()),
             "parts": self.parts.len(),
             "seconds": {"total": seconds},
             "film": film,
-        })
-        .to_string()
+        });
+        if let Some(spread) = spread {
+            json["samples_per_pixel"] = json!(spread);
+        }
+        json.to_string()
     }
 }

@@ -23,7 +23,7 @@ mod view;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a picture, or the pictures of an animation
-    #[command(after_help = render::EXAMPLES)]
+    #[command(after_help = render::MORE, after_long_help = render::EXAMPLES)]
     Render(Box<crate::args::RenderArgs>),
     /// Walk around in a scene, in a window
     #[cfg(feature = "view")]
@@ -41,7 +41,7 @@ pub enum Command {
     /// Write any readable scene as scene JSON
     Convert(convert::Convert),
     /// Say why a pixel is as it is, or which pixels are fireflies and why
-    #[command(after_help = probe::EXAMPLES)]
+    #[command(after_long_help = probe::EXAMPLES)]
     Probe(Box<probe::Probe>),
     /// Say how different two pictures are
     Compare(compare::Compare),

@@ -3,8 +3,9 @@
 use crate::console;
 use crate::failure::Failure;
 use crate::format::duration;
-use crate::output::STANDARD_OUTPUT;
-use crate::plan::Encoding;
+use crate::interrupt::Interrupts;
+use crate::output::{self, STANDARD_OUTPUT};
+use crate::plan::{Encoding, Target, effect};
 use clap::Args;
 use juggler::film::{self, Description, Wanted};
 use juggler::imaging::{self, Header, Tone};
@@ -36,7 +37,7 @@ pub struct Relight {
     #[arg(long, value_name = "1-100", value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: Option<u8>,
     /// Stops by which the picture is brightened, instead of those of the render
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS")]
     exposure: Option<f32>,
     /// Say nothing but errors
     #[arg(short, long)]
@@ -47,8 +48,11 @@ impl Relight {
     /// Mixes the groups anew.
     pub fn run(self) -> Result<(), Failure> {
         let start = Instant::now();
-        let Encoding { format, options } =
-            Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+        output::check_stream(&self.output)?;
+        let encoding = Encoding::new(self.format.as_deref(), self.bits, self.quality, &self.output)?;
+        let given = [("--quality", self.quality.is_some()), ("--exposure", self.exposure.is_some())];
+        effect::check(Target::Picture(encoding), &given)?;
+        let Encoding { format, options } = encoding;
         let merge = film::Merge::open(&self.films, Wanted::Whole)?;
         let Description { region, tone, metadata, layers, viewpoint, .. } = merge.description();
         let set = LayerSet::of_part(layers)?;
@@ -60,12 +64,15 @@ impl Relight {
         metadata.push(("Gain".to_owned(), self.gain.clone()));
         let viewpoint = *viewpoint;
         let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
+        let interrupts = Interrupts::watch()?;
         let mut writer = match self.output.as_str() {
             STANDARD_OUTPUT => imaging::to_standard_output(format, &header)?,
             file => imaging::create(Path::new(file), format, &header)?,
         };
-        merge
-            .rows_of_tiles(|band, tiles, _| Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?))?;
+        merge.rows_of_tiles(|band, tiles, _| {
+            interrupts.check()?;
+            Ok::<(), Failure>(writer.write_rows(&relit(&set, &gains, band, tiles))?)
+        })?;
         writer.finish()?;
         self.tell(region, start)
     }

@@ -3,7 +3,6 @@
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::Product;
 use juggler::Aov;
 use juggler::imaging::layered::PLACEHOLDER;
 use std::path::Path;
@@ -17,21 +16,15 @@ pub enum Place {
     File(String),
 }
 
-/// The layers that were asked for.
-pub fn wanted(args: &RenderArgs, output: &str, product: Product, is_film: bool) -> Result<Vec<Aov>, Failure> {
+/// The AOVs that were asked for.
+pub fn wanted(args: &RenderArgs, output: &str) -> Result<Vec<Aov>, Failure> {
     let wrong = |message: &str| Err(Failure::Wrong(message.into()));
-    let layers = args.aov.as_deref().map(parse).transpose()?;
+    let layers = args.aov.as_deref().map(Aov::list).transpose()?;
     match (layers, &args.aov_output) {
         (None, None) => Ok(Vec::new()),
-        (None, Some(_)) => wrong("--aov-output says where layers go: say which with --aov"),
-        (Some(_), _) if is_film => {
-            wrong("--aov is for pictures: numbered ones (-o 'frame_####.exr') can have layers, a film has none")
-        }
+        (None, Some(_)) => wrong("--aov-output says where AOVs go: say which with --aov"),
         (Some(_), None) if output == STANDARD_OUTPUT => {
-            wrong("--aov needs a file for the layers: give one with --aov-output")
-        }
-        (Some(_), Some(file)) if product == Product::Part => {
-            Err(Failure::Wrong(format!("a film part keeps its layers itself; `{file}` is for `juggler merge`")))
+            wrong("--aov needs a file for the AOVs: give one with --aov-output")
         }
         (Some(layers), Some(file)) => {
             check(file)?;
@@ -68,14 +61,6 @@ pub fn numbered(asked: Option<&str>, frame: u32) -> Option<String> {
     asked.map(|file| output::numbered(file, frame))
 }
 
-/// The layers that a list names: names with commas between, or `all`.
-fn parse(text: &str) -> Result<Vec<Aov>, Failure> {
-    if text == "all" {
-        return Ok(Aov::ALL.to_vec());
-    }
-    Ok(text.split(',').map(|name| Aov::by_name(name.trim())).collect::<Result<_, _>>()?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,12 +71,5 @@ mod tests {
         assert_eq!(place("a/b.png", None), Place::File("a/b.layers.exr".into()));
         assert_eq!(place("a/b.exr", Some("c.exr")), Place::File("c.exr".into()));
         assert_eq!(numbered(Some("l/{}_##.npy"), 7), Some("l/{}_07.npy".into()));
-    }
-
-    #[test]
-    fn lists_name_what_is_known() {
-        assert_eq!(parse("depth, albedo").unwrap(), [Aov::Depth, Aov::Albedo]);
-        assert_eq!(parse("all").unwrap(), Aov::ALL);
-        assert!(parse("depht").is_err_and(|error| format!("{error:?}").contains("`depth`")));
     }
 }

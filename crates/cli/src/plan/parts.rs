@@ -91,20 +91,10 @@ pub fn variable(name: &str) -> Option<String> {
 }
 
 impl Cut {
-    /// What was asked for. A picture's crop is the picture; a part's is a piece of it. Several frames, `are_frames`, can
-    /// be shared as they are.
-    pub fn new(args: &RenderArgs, product: Product, are_frames: bool) -> Result<Self, Failure> {
-        let is_part = product == Product::Part;
-        let shard = args.shard.is_some() && !are_frames;
-        let or = "; of several frames (--frames) it takes some";
-        for (flag, given, or) in [("--shard", shard, or), ("--sample-range", args.sample_range.is_some(), "")] {
-            if given && !is_part {
-                return Err(Failure::Wrong(format!(
-                    "{flag} makes a part of a picture, for `juggler merge`: give an output that ends in .jfilm{or}"
-                )));
-            }
-        }
-        Ok(Self { crop: args.crop.filter(|_| is_part), samples: args.sample_range.clone() })
+    /// What was asked for. A picture's crop is the picture; a part's is a piece of it.
+    pub fn new(args: &RenderArgs, product: Product) -> Self {
+        let crop = args.crop.filter(|_| product == Product::Part);
+        Self { crop, samples: args.sample_range.clone() }
     }
 }
 
@@ -132,17 +122,5 @@ mod tests {
         assert!(auto(&[]).unwrap_err().contains("JOB_COMPLETION_INDEX"));
         assert!(auto(&[("HQ_TASK_ID", "4")]).unwrap_err().contains("0 to 3"));
         assert!(auto(&[("HQ_TASK_ID", "x")]).unwrap_err().contains("`x`"));
-    }
-
-    #[test]
-    fn shards_are_parts() {
-        let refused = |line: &str| {
-            let args = RenderArgs::of(line.split(' ')).unwrap();
-            let product = Product::new(&args, args.output.as_deref().unwrap()).unwrap();
-            Cut::new(&args, product, false).err().map(|failure| format!("{failure:?}"))
-        };
-        assert!(refused("a --shard 0/2 -o a.png").unwrap().contains(".jfilm"));
-        assert!(refused("a --sample-range 0..16 -o a.png").unwrap().contains(".jfilm"));
-        assert_eq!(refused("a --shard 0/2 -o a.jfilm"), None);
     }
 }

@@ -3,7 +3,7 @@
 use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
-use juggler::imaging::{Format, Look, Options, SampleDepth};
+use juggler::imaging::{AnimationFormat, Format, Look, Options, SampleDepth};
 use std::path::Path;
 
 /// The ending of film parts.
@@ -34,19 +34,36 @@ impl Product {
             Some(name) => name == PART_ENDING,
             None => Path::new(output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(PART_ENDING)),
         };
-        if !is_part {
-            let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
-            return encoding.with_look(args.look).map(Self::Picture);
-        }
-        let wrong = |message: &str| Err(Failure::Wrong(message.into()));
-        match (output, args.bits, args.quality) {
-            (STANDARD_OUTPUT, ..) => wrong("a film part needs a file: it cannot go to standard output"),
-            (_, Some(_), _) => wrong("--bits is for pictures; a film part keeps the sums as they are"),
-            _ if args.look.is_some() => wrong("--look is for pictures; a film part keeps the sums as they are"),
-            (_, _, Some(_)) => wrong("--quality is for JPEG and MP4 files; a film part has none"),
+        match output {
+            _ if !is_part && args.format.is_none() && output != STANDARD_OUTPUT && !is_picture(output) => {
+                Err(Failure::Wrong(unknown_ending(output)))
+            }
+            _ if !is_part => {
+                let encoding = Encoding::new(args.format.as_deref(), args.bits, args.quality, output)?;
+                Ok(Self::Picture(encoding.with_look(args.look)))
+            }
+            STANDARD_OUTPUT => Err(Failure::Wrong("a film part needs a file: it cannot go to standard output".into())),
             _ => Ok(Self::Part),
         }
     }
+}
+
+fn is_picture(output: &str) -> bool {
+    Format::from_path(Path::new(output)).is_ok()
+}
+
+/// What to say of a name that tells no format, with all formats that there are.
+fn unknown_ending(output: &str) -> String {
+    let ending = Path::new(output).extension().map(|ending| ending.to_string_lossy());
+    let wrong = match ending {
+        Some(ending) => format!("no format has the ending .{ending}"),
+        None => "the name has no ending that tells the format".to_owned(),
+    };
+    let (pictures, movies) = (Format::endings(), AnimationFormat::endings());
+    format!(
+        "`{output}`: {wrong}; pictures can be {pictures}, movies {movies}, parts of pictures .{PART_ENDING} \
+         (or say --format)"
+    )
 }
 
 impl Encoding {
@@ -54,8 +71,9 @@ impl Encoding {
     pub fn new(format: Option<&str>, bits: Option<u8>, quality: Option<u8>, output: &str) -> Result<Self, Failure> {
         let wrong = |message: String| Failure::Wrong(message);
         let format = match format {
-            Some(name) => Format::from_path(Path::new(&format!("picture.{name}")))
-                .map_err(|_| wrong(format!("no format is called `{name}`; known are {}", Format::endings())))?,
+            Some(name) => {
+                Format::from_path(Path::new(&format!("picture.{name}"))).map_err(|_| wrong(unknown_format(name)))?
+            }
             None if output == STANDARD_OUTPUT => Format::Png,
             None => Format::from_path(Path::new(output)).map_err(|error| wrong(error.to_string()))?,
         };
@@ -63,23 +81,20 @@ impl Encoding {
         if let Some(bits) = bits {
             set_bits(&mut options, format, bits)?;
         }
-        if let Some(quality) = quality {
-            if format != Format::Jpeg {
-                return Err(wrong(format!("--quality is for JPEG and MP4 files; a {format} file has none")));
-            }
-            options.jpeg_quality = quality;
-        }
+        options.jpeg_quality = quality.unwrap_or(options.jpeg_quality);
         Ok(Self { format, options })
     }
 
-    /// The same with a look, which takes levels.
-    pub fn with_look(mut self, look: Option<Look>) -> Result<Self, Failure> {
-        if look.is_some() && !self.format.has_looks() {
-            return Err(Failure::Wrong(format!("--look is for levels; a {} file keeps light as it is", self.format)));
-        }
+    /// The same with a display look.
+    pub fn with_look(mut self, look: Option<Look>) -> Self {
         self.options.look = look.unwrap_or_default();
-        Ok(self)
+        self
     }
+}
+
+fn unknown_format(name: &str) -> String {
+    let (pictures, movies) = (Format::endings(), AnimationFormat::endings());
+    format!("no format is called `{name}`; pictures can be {pictures}, movies {movies}").replace(" .", " ")
 }
 
 fn set_bits(options: &mut Options, format: Format, bits: u8) -> Result<(), Failure> {

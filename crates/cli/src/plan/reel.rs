@@ -2,7 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::failure::Failure;
-use crate::output::STANDARD_OUTPUT;
+use crate::output::{self, STANDARD_OUTPUT};
 use juggler::imaging::animation::DEFAULT_QUALITY;
 use juggler::imaging::{AnimationFormat, AnimationHeader, Tone};
 use std::path::Path;
@@ -36,25 +36,10 @@ impl Reel {
             if named.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(MP4)) {
                 return wrong(format!("`{output}`: this program was built without MP4 (the feature `av1`)"));
             }
-            let flag = args.fps.map(|_| "--fps").or(args.plays.map(|_| "--plays"));
-            let endings = AnimationFormat::endings();
-            return flag.map_or(Ok(None), |flag| wrong(format!("{flag} is for moving pictures: {endings}")));
+            return Ok(None);
         };
         if output == STANDARD_OUTPUT {
             return wrong(format!("a film needs a file: {format} cannot go to standard output"));
-        }
-        let unfit =
-            [("--bits", args.bits.is_some()), ("--frame", args.view.frame.is_some()), ("--at", args.view.at.is_some())];
-        if let Some((flag, _)) = unfit.into_iter().find(|(_, given)| *given) {
-            return wrong(format!("{flag} is for pictures; `{output}` is a film of several frames"));
-        }
-        if args.quality.is_some() && !format.has_quality() {
-            return wrong(format!("--quality is for JPEG and MP4 files; {format} has none"));
-        }
-        if args.plays.is_some() && !format.says_how_often() {
-            return wrong(format!(
-                "--plays: how often an {format} is shown is up to who shows it; .webp .apng .gif say it"
-            ));
         }
         let (file, frames_per_second) = (output.to_owned(), args.fps);
         let (plays, quality) = (args.plays.unwrap_or(0), args.quality.unwrap_or(DEFAULT_QUALITY));
@@ -97,6 +82,6 @@ impl Reel {
 
 /// A `.webp` is a picture unless several frames go into one file.
 fn is_wanted(format: AnimationFormat, args: &RenderArgs, output: &str) -> bool {
-    let several = args.frames.is_some() && !output.contains('#');
+    let several = args.frames.is_some() && !output::has_number(output);
     format != AnimationFormat::Webp || several || args.fps.is_some() || args.plays.is_some()
 }

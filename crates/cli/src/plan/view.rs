@@ -27,3 +27,23 @@ impl ViewArgs {
         }
     }
 }
+
+/// Warns of a frame beyond the end of an animation, which is rendered all the same. A scene of one
+/// frame does not say how long it goes on.
+pub fn beyond_the_end(frame: u32, frames: u32) -> Option<String> {
+    (frames > 1 && frame >= frames).then(|| {
+        let last = frames - 1;
+        format!("warning: frame {frame} is beyond the end of the animation, which has {frames} frames, 0 to {last}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_that_there_are_are_told() {
+        assert_eq!((beyond_the_end(29, 30), beyond_the_end(7, 1)), (None, None));
+        assert!(beyond_the_end(40, 30).is_some_and(|message| message.contains("30 frames, 0 to 29")));
+    }
+}

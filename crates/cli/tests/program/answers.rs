@@ -49,6 +49,17 @@ fn help_tells_everything() {
 }
 
 #[test]
+fn short_help_fits_a_screen() {
+    let folder = Folder::new();
+    let lines = |line: &str| folder.good(line).stdout.lines().count();
+    assert!((24..=40).contains(&lines("render -h")), "{}", folder.good("render -h").stdout);
+    assert!(lines("render --help") > 100);
+    for command in ["", "check", "info", "merge", "relight", "convert", "probe", "compare", "bench"] {
+        assert!(lines(&format!("{command} -h")) <= 40, "{command}");
+    }
+}
+
+#[test]
 fn built_in_scenes_are_listed_and_render() {
     let folder = Folder::new();
     let list = folder.good("scenes").stdout;
@@ -234,16 +245,24 @@ fn color_on_a_terminal_unless_it_is_not_wanted() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_terminal_gets_no_picture() {
+    let folder = Folder::new();
+    folder.good("render ball.json -q -o a.jfilm");
+    for line in ["render ball.json -o -", "merge a.jfilm -o -"] {
+        let (controller, terminal) = terminal();
+        let run = folder.command(line).stdout(terminal).output().unwrap();
+        let message = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.code() == Some(2) && message.contains("which is a terminal"), "{line}: {message}");
+        drop(controller);
+    }
+}
+
 /// Runs a command with standard error on a pseudo-terminal; returns what appeared there.
 #[cfg(unix)]
 fn on_a_terminal(command: &mut Command) -> String {
-    use rustix::fs::{Mode, OFlags};
-    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
-    grantpt(&controller).unwrap();
-    unlockpt(&controller).unwrap();
-    let name = ptsname(&controller, Vec::new()).unwrap();
-    let terminal = rustix::fs::open(name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+    let (controller, terminal) = terminal();
     let mut child = command.stdout(Stdio::null()).stderr(terminal).spawn().unwrap();
     // The reading end reports an error as soon as nobody holds the other end any more.
     command.stderr(Stdio::null());
@@ -251,6 +270,19 @@ fn on_a_terminal(command: &mut Command) -> String {
     let _ = fs::File::from(controller).read_to_end(&mut bytes);
     child.wait().unwrap();
     String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Both ends of a pseudo-terminal.
+#[cfg(unix)]
+fn terminal() -> (std::os::fd::OwnedFd, std::os::fd::OwnedFd) {
+    use rustix::fs::{Mode, OFlags};
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&controller).unwrap();
+    unlockpt(&controller).unwrap();
+    let name = ptsname(&controller, Vec::new()).unwrap();
+    let terminal = rustix::fs::open(name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+    (controller, terminal)
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn files_that_cannot_be() {
     fs::create_dir(folder.path("folder.png")).unwrap();
     fs::write(folder.path("junk.png"), "no picture").unwrap();
     let message = folder.bad("render ball.json -o none/there.png", 3);
-    assert_eq!(message, "error: cannot write `none/there.png`: no such file or folder\n");
+    assert_eq!(message, "error: cannot write `none/there.png`: there is no folder `none`\n");
     folder.bad("render ball.json -o folder.png", 3);
     folder.bad("render ball.json -q -o a.png --stats none/there.json", 3);
     folder.bad("compare junk.png junk.png", 3);
@@ -164,4 +164,69 @@ fn too_little_memory_is_said_before_rendering() {
     assert!(message.contains("512.0 MiB") && message.contains("GiB") && message.contains("JPEG"), "{message}");
     assert_eq!(folder.files(), [""; 0]);
     folder.good("render ball.json -q --max-memory 4G --threads 1");
+}
+
+#[test]
+fn flags_that_cannot_act_are_refused_and_settings_warned_of() {
+    let folder = Folder::new();
+    for line in [
+        "render ball.json --tone agx -o a.exr",
+        "render ball.json --exposure 1 -o a.hdr",
+        "render ball.json --white-balance 3200 -o a.pfm",
+        "render ball.json --dither on --look ham",
+        "render ball.json --integrator normals --max-depth 3",
+        "render ball.json --denoise --samples 1",
+        "probe ball.json --integrator normals --max-depth 3 1,1",
+    ] {
+        let message = folder.bad(line, 2);
+        let flag = line.split(' ').rfind(|word| word.starts_with("--") && message.contains(word));
+        assert!(flag.is_some() && !message.contains("panicked"), "{line}: {message}");
+        assert_eq!(folder.files(), [""; 0], "{line}");
+    }
+    folder.bad("probe ball.json --fireflies --tree-depth 3", 2);
+    folder.good("render cornell-box --max-depth 4 --size 8x8 --samples 1 -q -o box.png");
+    let scene = fs::read_to_string(folder.path("ball.json")).unwrap();
+    fs::write(folder.path("toned.json"), scene.replacen('{', r#"{"tone": {"exposure_stops": 1},"#, 1)).unwrap();
+    let warning = "warning: `tone.exposure_stops` has no effect: OpenEXR files keep linear light\n";
+    let run = folder.run("render toned.json -o toned.exr");
+    assert_eq!((run.status, run.stderr.as_str()), (0, warning));
+    folder.good("render toned.json -q -o toned.exr");
+    folder.good("render toned.json -o toned.png");
+    folder.good("render toned.json -q -o toned.jfilm");
+    assert_eq!(folder.run("merge toned.jfilm -o toned.exr").stderr, warning);
+    assert!(folder.bad("merge toned.jfilm -o other.jfilm --aov-output a.exr", 2).contains("--aov-output"));
+}
+
+#[test]
+fn errors_say_what_helps() {
+    let folder = Folder::new();
+    for (line, said) in [
+        ("render ball.json -o a.webm", ".mp4"),
+        ("render ball.json -o a.tif", "movies .apng"),
+        ("render ball.json --format avi", "movies apng"),
+        ("render ball.json --size 65536x65536 -o a.png", "for '--size <WxH>': these are"),
+        ("render ball.json --samples -4", "'-4'"),
+        ("render ball.json --width 40", "--size WxH"),
+        ("render ball.json -s 4", "--samples N"),
+    ] {
+        let message = folder.bad(line, 2);
+        assert!(message.contains(said), "{line}: {message}");
+    }
+    let run = folder.run("render ball.json --frame 40 -o a.png");
+    assert_eq!(run.stderr, "warning: frame 40 is beyond the end of the animation, which has 4 frames, 0 to 3\n");
+    folder.good("render ball.json --frames 0..2 -q -o f_%04d.png");
+    folder.good("render ball.json --aov Z,cryptomatte,beauty -q -o b.exr");
+    assert_eq!(folder.files(), ["a.png", "b.exr", "f_0000.png", "f_0001.png"]);
+    folder.good("render ball.json -q -o c.png --checkpoint c.jfilm");
+    let message = folder.bad("render juggler --size 16x9 -o c.png --checkpoint c.jfilm", 2);
+    assert!(
+        message.contains("of the scene `ball.json`, not `juggler`") && message.contains("--checkpoint"),
+        "{message}"
+    );
+    let is_hash = |word: &str| word.len() >= 32 && word.bytes().all(|byte| byte.is_ascii_hexdigit());
+    assert!(!message.split_whitespace().any(is_hash), "{message}");
+    for line in ["render ball.json --checkpoint no/folder/a.jfilm", "render ball.json --samples 9 -o no/folder/a.jfilm"]
+    {
+        assert!(folder.bad(line, 3).contains("there is no folder `no`"), "{line}");
+    }
 }

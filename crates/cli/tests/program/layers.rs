@@ -111,7 +111,7 @@ fn what_cannot_be_is_said() {
     for (line, said) in [
         ("render ball.json --aov dept", "did you mean `depth`"),
         ("render ball.json --aov depth -o -", "--aov-output"),
-        ("render ball.json --aov depth -o a.gif", "film"),
+        ("render ball.json --aov depth -o a.gif", "movie"),
         ("render ball.json --aov-output a.exr", "--aov"),
         ("render ball.json --aov depth --aov-output a.npy", "{}"),
         ("render ball.json --aov depth -o a.jfilm --aov-output a.exr", "merge"),

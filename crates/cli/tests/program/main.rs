@@ -13,6 +13,7 @@ mod meshes;
 mod parts;
 mod pictures;
 mod probing;
+mod readme;
 mod serving;
 mod signals;
 mod statistics;

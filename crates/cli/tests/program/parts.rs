@@ -1,6 +1,6 @@
 //! Work that is kept, gone on with, shared and joined.
 
-use crate::harness::{self, Folder, wait_until};
+use crate::harness::{self, Folder, Run, wait_until};
 use serde_json::Value;
 use std::fs;
 use std::process::Stdio;
@@ -217,4 +217,52 @@ fn a_picture_ended_by_time_is_made_again_from_its_counts() {
     fs::rename(folder.path("timed.png"), folder.path("moved.png")).unwrap();
     let told = folder.good("info moved.png").stdout;
     assert!(told.contains("--samples-from moved.png"), "{told}");
+}
+
+#[test]
+fn a_checkpoint_that_cannot_be_written_costs_no_picture() {
+    let folder = Folder::new();
+    // The shell's limit on the size of files stands for a full disk: the picture is small, the
+    // checkpoint is not.
+    let program = env!("CARGO_BIN_EXE_juggler");
+    let line = format!(
+        "trap '' XFSZ; ulimit -f 40; exec {program} render ball.json --size 96x64 --samples 16 -o a.png --checkpoint a.jfilm"
+    );
+    let mut shell = std::process::Command::new("sh");
+    let run = Run::of(shell.args(["-c", &line]).current_dir(folder.path(".")).output().unwrap());
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert!(run.stderr.contains("cannot write `a.jfilm`") && run.stdout.starts_with("a.png: "), "{}", run.stderr);
+    folder.good("render ball.json --size 96x64 --samples 16 -o b.png -q");
+    assert!(fs::read(folder.path("a.png")).unwrap() == fs::read(folder.path("b.png")).unwrap());
+    // AOVs beside the picture cost it neither.
+    let message = folder.bad("render ball.json --aov depth -q -o c.png --aov-output /dev/null/a.exr", 3);
+    assert!(message.contains("/dev/null/a.exr"), "{message}");
+}
+
+#[test]
+fn pictures_that_end_by_noise_or_time_say_how_many_samples_they_got() {
+    let folder = Folder::new();
+    let line = format!("render {BALL} --integrator path --noise 0.2");
+    let run = folder.good(&format!("{line} -o a.png --stats a.json"));
+    let stats: Value = serde_json::from_str(&fs::read_to_string(folder.path("a.json")).unwrap()).unwrap();
+    let spread = &stats["samples_per_pixel"];
+    let [min, mean, max] = ["min", "mean", "max"].map(|key| spread[key].as_f64().unwrap());
+    assert!(min >= 64.0 && min <= mean && mean <= max && max < 65_536.0, "{spread}");
+    assert_eq!(stats["samples"].as_f64(), Some(max));
+    assert!(run.stdout.contains(&format!("{min} to {max} samples, ")) || min == max, "{}", run.stdout);
+    let told = folder.good("info a.png").stdout;
+    assert!(told.contains(&format!("Samples      {min}")) && !told.contains("65536"), "{told}");
+    // Shards say the same, byte by byte.
+    for shard in 0..2 {
+        folder.good(&format!("{line} -q --shard {shard}/2 -o {shard}.jfilm"));
+    }
+    let merged = folder.good("merge 0.jfilm 1.jfilm -o b.png --stats -").stdout;
+    assert!(fs::read(folder.path("a.png")).unwrap() == fs::read(folder.path("b.png")).unwrap());
+    assert_eq!(serde_json::from_str::<Value>(&merged).unwrap()["samples_per_pixel"], *spread);
+    let run = folder.run(&format!("render {BALL} --time 3 -o t.png --progress json"));
+    let events: Vec<Value> = run.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let progress = events.iter().find(|event| event["event"] == "progress").unwrap();
+    assert!(events[0]["samples"].is_null() && progress["limit_seconds"] == 3.0, "{progress}");
+    assert!(progress["eta_seconds"].as_f64().unwrap() < 2.9 && progress["fraction"].as_f64().unwrap() > 0.1);
+    assert!(!run.stdout.contains("16777216") && !folder.good("info t.png").stdout.contains("16777216"));
 }

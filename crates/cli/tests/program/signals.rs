@@ -74,3 +74,52 @@ fn a_second_signal_ends_the_program_at_once() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(second.elapsed() < Duration::from_secs(5), "{:?}", second.elapsed());
 }
+
+/// Whether this process, and so what it starts, ignores SIGHUP, as under `nohup`.
+#[cfg(target_os = "linux")]
+fn ignores_hangups() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap();
+    u64::from_str_radix(mask.trim(), 16).unwrap() & 1 == 1
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_that_goes_away_ends_a_render_in_order() {
+    if !ignores_hangups() {
+        let folder = Folder::new();
+        let run = interrupt(&folder, "-HUP");
+        assert_eq!((run.status, run.stderr.trim()), (129, "interrupted"));
+        assert_eq!(folder.files(), [""; 0]);
+    }
+}
+
+#[test]
+fn what_a_killed_render_left_goes_with_the_next_that_succeeds() {
+    let folder = Folder::new();
+    assert_eq!(interrupt(&folder, "-KILL").status, -1);
+    assert_eq!(folder.files(), [".out.png.part"]);
+    folder.good("render ball.json -q -o out.png");
+    assert_eq!(folder.files(), ["out.png"]);
+}
+
+#[test]
+fn an_interrupted_merge_leaves_nothing() {
+    let folder = Folder::new();
+    // Larger pictures take a fast machine long enough.
+    let interrupted = [700, 2000].into_iter().any(|side| {
+        folder.good(&format!("render ball.json --integrator normals --samples 1 --size {side}x{side} -o a.jfilm -q"));
+        let _ = fs::remove_file(folder.path("out.png"));
+        let mut command = folder.command("merge a.jfilm -o out.png");
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let begun = || folder.files().len() > 1;
+        wait_until("the first bytes of the picture", || begun() || child.try_wait().unwrap().is_some());
+        harness::signal(&child, "-TERM");
+        let run = Run::of(child.wait_with_output().unwrap());
+        if run.status == 143 {
+            assert_eq!((run.stderr.trim(), folder.files()), ("interrupted", vec!["a.jfilm".to_owned()]));
+        }
+        run.status == 143
+    });
+    assert!(interrupted, "all merges were done before the signal came");
+}

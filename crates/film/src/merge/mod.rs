@@ -12,6 +12,7 @@ mod tests;
 
 pub use complaint::{Complaint, MergeError, ToDo};
 
+use crate::counts;
 use crate::part::{Chunk, Description, Part, PartError, PartWriter};
 use juggler_math::Rgb;
 use juggler_tracer::film::{Digest, Layout, Rect, Summary, TILE, Tile};
@@ -73,16 +74,28 @@ impl Merge {
         Ok(digest.finish())
     }
 
-    /// Writes one part that holds all that the parts hold. Returns its bytes.
-    pub fn write(&self, path: &Path) -> Result<u64, PartError> {
+    /// How many samples each tile gets from all parts together, in the order of the tiles.
+    pub fn counts(&self) -> Result<Vec<u32>, PartError> {
+        let mut counts = vec![0_u32; usize::try_from(self.description.layout().tiles()).unwrap_or(0)];
+        for part in &self.parts {
+            let own = counts::of_part(part)?;
+            counts.iter_mut().zip(own).for_each(|(count, own)| *count = count.saturating_add(own));
+        }
+        Ok(counts)
+    }
+
+    /// Writes one part that holds all that the parts hold. Returns its bytes. An error of
+    /// `proceed`, which is asked again and again, ends it without a file.
+    pub fn write<E: From<PartError>>(&self, path: &Path, proceed: impl Fn() -> Result<(), E>) -> Result<u64, E> {
         let mut writer = PartWriter::create(path, &self.description)?;
         self.bands(|first, tiles| {
             for (number, tile) in (first..).zip(tiles).filter(|(_, tile)| !tile.runs().is_empty()) {
+                proceed()?;
                 writer.add(number, &Chunk::encode(tile, self.description.clamped))?;
             }
-            Ok::<(), PartError>(())
+            Ok::<(), E>(())
         })?;
-        writer.finish()
+        Ok(writer.finish()?)
     }
 
     /// Gathers whole rows of tiles from all parts: the number of the first and the tiles.

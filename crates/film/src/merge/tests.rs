@@ -113,7 +113,7 @@ fn what_clamping_took_is_summed_over_all_parts() {
         let mut files = vec![part("b.jfilm", cut..SAMPLES), part("a.jfilm", 0..cut)];
         assert_eq!(merged(&files).1.clamped, expected);
         let joined = folder.path("joined.jfilm");
-        Merge::open(&files, Wanted::Part).unwrap().write(&joined).unwrap();
+        Merge::open(&files, Wanted::Part).unwrap().write(&joined, || Ok::<(), PartError>(())).unwrap();
         assert_eq!(merged(&[joined]).1.clamped, expected);
         files.push(folder.share(0, 1));
         assert!(folder.complaints(&files).contains("clamped"), "{}", folder.complaints(&files));
@@ -147,11 +147,11 @@ fn any_cut_and_any_way_of_joining_is_the_whole() {
         let joined = folder.path("joined.jfilm");
         let first = Merge::open(&half, Wanted::Part).unwrap();
         assert!(!first.description().finished);
-        first.write(&joined).unwrap();
+        first.write(&joined, || Ok::<(), PartError>(())).unwrap();
         files.push(joined);
         assert_eq!(merged(&files), expected);
         let one = folder.path("one.jfilm");
-        Merge::open(&files, Wanted::Whole).unwrap().write(&one).unwrap();
+        Merge::open(&files, Wanted::Whole).unwrap().write(&one, || Ok::<(), PartError>(())).unwrap();
         assert_eq!(merged(std::slice::from_ref(&one)), expected);
         let all = folder.path("all.jfilm");
         write(&all, &description, tiles(REGION, 0..SAMPLES)).unwrap();
@@ -164,9 +164,9 @@ fn the_order_of_files_does_not_show_in_the_part() {
     let folder = Folder::new();
     let mut files: Vec<PathBuf> = (0..3).map(|index| folder.share(index, 3)).collect();
     let (a, b) = (folder.path("a.jfilm"), folder.path("b.jfilm"));
-    Merge::open(&files, Wanted::Whole).unwrap().write(&a).unwrap();
+    Merge::open(&files, Wanted::Whole).unwrap().write(&a, || Ok::<(), PartError>(())).unwrap();
     files.reverse();
-    Merge::open(&files, Wanted::Whole).unwrap().write(&b).unwrap();
+    Merge::open(&files, Wanted::Whole).unwrap().write(&b, || Ok::<(), PartError>(())).unwrap();
     assert_eq!(std::fs::read(a).unwrap(), std::fs::read(b).unwrap());
 }
 

@@ -275,9 +275,22 @@ impl std::fmt::Display for Stop {
 
 impl std::fmt::Display for Mismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let shown = |text: &str| if text.is_empty() { "nothing".to_owned() } else { text.to_owned() };
+        let shown = |text: &str| match text {
+            "" => "nothing".to_owned(),
+            text if is_hash(text) => "something else".to_owned(),
+            text => text.to_owned(),
+        };
+        if is_hash(&self.here) && is_hash(&self.there) {
+            return write!(f, "{}: not the same", self.name);
+        }
         write!(f, "{}: {} instead of {}", self.name, shown(&self.there), shown(&self.here))
     }
+}
+
+/// Whether a text is made of hashes, which tell people nothing.
+fn is_hash(text: &str) -> bool {
+    let hash = |word: &str| word.len() >= 32 && word.bytes().all(|byte| byte.is_ascii_hexdigit());
+    !text.is_empty() && text.split(' ').all(hash)
 }
 
 fn size([width, height]: [u32; 2]) -> String {

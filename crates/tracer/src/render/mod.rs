@@ -25,7 +25,7 @@ mod wavefront;
 mod tests;
 
 pub use control::{Control, Rays};
-pub use progressive::{Exposure, Hand, expose, is_finished, most_runs};
+pub use progressive::{Exposure, Hand, NoiseSoFar, expose, is_finished, most_runs, noise_so_far};
 pub use rounds::Stop;
 pub use schedule::{BAND_PIXELS, Schedule, Scheduler, Stopped, band_bytes, render};
 pub use wavefront::{Inspected, LightGain, PathVertex, inspect};

@@ -59,6 +59,36 @@ pub fn is_finished(film: &Film, stop: Stop) -> bool {
     (0..film.len()).all(|place| Round::after(film, stop, place, 0).is_none())
 }
 
+/// Most tiles that [`noise_so_far`] looks at.
+const MOST_LOOKED_AT: usize = 1024;
+
+/// How far a film is from a level of noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseSoFar {
+    /// Largest relative error of a tile, as [`Stop::Noise`] has it.
+    pub noise: f64,
+    /// Samples so far over those that will be needed, from 0 to 1, if the variance of samples stays
+    /// what it is.
+    pub fraction: f64,
+}
+
+/// How far a film is from a level of noise, estimated from at most 1024 of its tiles, which takes
+/// about ten milliseconds; `None` until each of these has samples enough to tell.
+pub fn noise_so_far(film: &Film, level: f32) -> Option<NoiseSoFar> {
+    let (limit, step) = (f64::from(level) * f64::from(level), film.len().div_ceil(MOST_LOOKED_AT).max(1));
+    let (mut worst, mut done, mut needed) = (0.0_f64, 0.0, 0.0);
+    for place in (0..film.len()).step_by(step) {
+        let most = film.wanted(place).last().map_or(0, |wanted| wanted.end);
+        let tile = film.tile(place)?;
+        let (area, count, variance) = (tile.pixels().area() as f64, f64::from(tile.count()), tile.relative_variance()?);
+        worst = worst.max(variance);
+        done += area * count;
+        // The variance of a mean falls as the number of its samples rises.
+        needed += area * (count * (variance / limit).max(1.0)).min(f64::from(most).max(count));
+    }
+    (needed > 0.0).then(|| NoiseSoFar { noise: worst.sqrt(), fraction: done / needed })
+}
+
 /// The most runs of samples that a tile may hold on its way to the samples `wanted`, each a [`Sum`](crate::film::Sum) a
 /// pixel: after some rounds the sums of a tile are not yet joined into one.
 pub fn most_runs(wanted: &Range<u32>) -> usize {
@@ -184,6 +214,20 @@ pub(super) mod tests {
         });
         assert_eq!(stopped.counts(), counts);
         assert_eq!(means(&stopped), means(&straight));
+    }
+
+    #[test]
+    fn noise_so_far_falls_to_its_level() {
+        with_job(2, |job| {
+            assert_eq!(noise_so_far(&whole(0..600), 0.008), None);
+            let begun = exposed(job, whole(0..32), Stop::Samples);
+            let film = whole(0..600);
+            begun.tiles().for_each(|(number, tile)| assert_eq!(film.add(number, tile), Ok(true)));
+            let early = noise_so_far(&film, 0.008).unwrap();
+            assert!(early.noise > 0.008 && early.fraction > 0.0 && early.fraction < 1.0, "{early:?}");
+            let late = noise_so_far(&exposed(job, film, Stop::Noise(0.008)), 0.008).unwrap();
+            assert!(late.noise <= 0.008 && late.fraction == 1.0, "{late:?}");
+        });
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! One of the pictures that are compared, with what it knows of its noise.
 
 use crate::failure::Failure;
+use crate::reproduce::SAMPLES;
 use juggler::estimate;
 use juggler::film::{self, Description, Merge, Wanted};
 use juggler::imaging::layered::read_layer;
@@ -76,6 +77,11 @@ fn text<'m>(metadata: &'m [(String, String)], key: &str) -> Option<&'m str> {
     metadata.iter().find(|(known, _)| known == key).map(|(_, text)| text.as_str())
 }
 
+/// The samples that every pixel has, as the picture says it: `64`, or `16 to 512, ...`.
+fn fewest_samples(metadata: &[(String, String)]) -> Option<u32> {
+    text(metadata, SAMPLES)?.split(' ').next()?.parse().ok()
+}
+
 /// What the layers `variance` and `samples` of an EXR say; without the latter, as many samples everywhere as the picture says that it has.
 fn variances(path: &Path, image: &Image, metadata: &[(String, String)]) -> Result<Option<Estimate>, Failure> {
     let Some((width, height, variance)) = read_layer(path, &["variance.R", "variance.G", "variance.B"])? else {
@@ -87,7 +93,7 @@ fn variances(path: &Path, image: &Image, metadata: &[(String, String)]) -> Resul
     let count = image.pixels().len();
     let samples = match read_layer(path, &["samples.Y"])? {
         Some((.., samples)) if samples.len() == count => samples.iter().map(|[count, ..]| *count as u32).collect(),
-        _ => vec![text(metadata, "Samples").and_then(|count| count.parse().ok()).unwrap_or(2 * BLOCK); count],
+        _ => vec![fewest_samples(metadata).unwrap_or(2 * BLOCK); count],
     };
     let blocks: Vec<u32> = variance
         .iter()

@@ -8,6 +8,9 @@ use juggler::tracer::film::Rect;
 use serde_json::json;
 use std::path::Path;
 
+/// As many samples as a pixel can have: as good as no limit.
+const MOST_SAMPLES: u32 = 1 << 24;
+
 /// What the tiles of a part hold.
 struct Contents {
     /// Tiles with samples.
@@ -79,6 +82,7 @@ fn goal(stop: Stop, samples: u32) -> String {
     match stop {
         Stop::Samples => format!("{samples} samples"),
         Stop::Noise { level } => format!("until the noise is {level}, at most {samples} samples"),
+        Stop::Time { seconds } if samples == MOST_SAMPLES => format!("{seconds} s"),
         Stop::Time { seconds } => format!("{seconds} s, at most {samples} samples"),
     }
 }

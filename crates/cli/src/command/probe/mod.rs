@@ -7,6 +7,7 @@ use crate::args::ViewArgs;
 use crate::console;
 use crate::failure::Failure;
 use crate::output::{self, STANDARD_OUTPUT};
+use crate::plan::{beyond_the_end, effect};
 use crate::source;
 use crate::value;
 use clap::Args;
@@ -42,15 +43,15 @@ pub struct Probe {
     fireflies: Option<u32>,
 
     /// Samples that are told one by one, the brightest first
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    #[arg(long, value_name = "N", default_value = "5", conflicts_with = "fireflies", value_parser = clap::value_parser!(u32).range(0..=10_000))]
     brightest: u32,
 
     /// Places in a row that the tree of paths tells apart
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(0..=64))]
+    #[arg(long, value_name = "N", default_value = "5", conflicts_with = "fireflies", value_parser = clap::value_parser!(u32).range(0..=64))]
     tree_depth: u32,
 
     /// Branches of each place in the tree of paths; smaller ones are summed
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    #[arg(long, value_name = "N", default_value = "5", conflicts_with = "fireflies", value_parser = clap::value_parser!(u32).range(0..=10_000))]
     branches: u32,
 
     /// Write the numbers as JSON; `-` is standard output
@@ -70,8 +71,11 @@ impl Probe {
     pub fn run(self) -> Result<(), Failure> {
         let scene = source::load(&self.scene, None)?;
         let frame = self.view.frame(scene.description.animation.frames_per_second);
+        let beyond = self.view.frame.and_then(|frame| beyond_the_end(frame, scene.description.animation.frames));
+        beyond.iter().for_each(|warning| console::say(warning));
         let scene = if frame == 0.0 { scene } else { scene.at_frame(frame)? };
         let settings: Settings = self.view.settings();
+        effect::check_scene(&settings, &scene)?;
         // How long the shutter is open may be wished for, and decides what moves.
         let scene = settings.apply(&scene)?;
         let pool = ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build();

@@ -5,12 +5,12 @@ use crate::console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::plan::layers::{self, Place};
-use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard};
-use crate::progress::{Watch, watched};
-use crate::reproduce::{self, SAMPLES_PER_TILE};
+use crate::plan::{Checkpoint as Keeping, Cut, Product, Shard, Shot};
+use crate::progress::{Goal, Watch, watched};
+use crate::reproduce::{self, SAMPLES, SAMPLES_PER_TILE};
 use juggler::denoise::Denoised;
 use juggler::film::checkpoint::{self, Checkpoint};
-use juggler::film::counts;
+use juggler::film::counts::{self, Spread};
 use juggler::film::part::{Description, Part, PartError, Share, write};
 use juggler::film::share::{self, Work};
 use juggler::imaging::layered::LayeredWriter;
@@ -32,8 +32,11 @@ struct Exposure<'t> {
     description: Description,
 }
 
+/// A picture that is there, and what went wrong beside it.
+pub type Made = (Outcome, Result<(), Failure>);
+
 /// Renders on a film.
-pub fn render(session: &Session, take: &Take, header: Header, interrupts: &Interrupts) -> Result<Outcome, Failure> {
+pub fn render(session: &Session, take: &Take, header: Header, interrupts: &Interrupts) -> Result<Made, Failure> {
     let (film, share) = wanted(session, take)?;
     let command = reproduce::command(&session.plan, take.shot);
     let origin = Origin { scene: session.plan.scene.clone(), frame: take.shot.frame, command };
@@ -129,7 +132,7 @@ pub fn forget(file: &str) {
 }
 
 impl Exposure<'_> {
-    fn run(mut self, interrupts: &Interrupts) -> Result<Outcome, Failure> {
+    fn run(mut self, interrupts: &Interrupts) -> Result<Made, Failure> {
         let mut kept = self.take.shot.checkpoint.as_deref().map(|file| self.open(file)).transpose()?;
         let is_own = self.session.plan.checkpoint.as_ref().is_some_and(|checkpoint| checkpoint.is_own);
         let (control, start) = (Control::default(), Instant::now());
@@ -137,25 +140,40 @@ impl Exposure<'_> {
         let render = start.elapsed();
         self.description.finished = result.is_ok() && self.take.picture.is_finished(&self.film);
         // A film's frame that is finished is kept as a picture.
-        if let Some(kept) = kept.as_mut().filter(|_| !is_own || result.is_err()) {
-            kept.save(&self.description, &self.film)?;
-        }
+        let saved = self.save(kept.as_mut().filter(|_| !is_own || result.is_err()));
         if result.is_err() {
+            saved?;
             let caught = interrupts.caught();
             let file = kept.and(self.take.shot.checkpoint.clone());
             return Err(caught.map_or(Failure::System(Stopped.to_string()), |failure| failure.keeping(file)));
         }
+        // A part whose checkpoint is its own file is written by that alone.
+        let saved = if self.take.shot.checkpoint.as_ref() == Some(&self.take.shot.output) {
+            saved?;
+            Ok(())
+        } else {
+            saved
+        };
         let denoise = Instant::now();
         let pixels = if self.session.plan.product == Product::Part { None } else { self.pixels(&control)? };
         let (denoise, write) = (denoise.elapsed(), Instant::now());
-        let film = self.write(pixels.as_deref())?;
-        if let Some(kept) = kept {
+        // Finished work is written before anything is told of a checkpoint that could not be.
+        let (film, layers) = self.write(pixels.as_deref())?;
+        if let Some(kept) = kept.filter(|_| saved.is_ok()) {
             kept.close();
         }
         if is_own {
             self.take.shot.checkpoint.as_deref().into_iter().for_each(forget);
         }
-        Ok(Outcome { film, rays: control.rays(), render, denoise, write: write.elapsed() })
+        let samples = Spread::of_film(&self.film);
+        let outcome = Outcome { film, samples, rays: control.rays(), render, denoise, write: write.elapsed() };
+        Ok((outcome, saved.and(layers)))
+    }
+
+    /// Keeps the film as it is now, if it is to be kept.
+    fn save(&self, kept: Option<&mut Checkpoint>) -> Result<(), Failure> {
+        let saved = kept.map(|kept| kept.save(&self.description, &self.film)).transpose();
+        saved.map(drop).map_err(Failure::from)
     }
 
     /// Opens the checkpoint and takes over what it holds. One of our own that does not fit is of another scene: it goes.
@@ -193,8 +211,14 @@ impl Exposure<'_> {
         let Session { plan, reporter } = self.session;
         let goal = self.film.goal().saturating_sub(self.film.samples());
         let course = self.take.moment.course;
-        reporter.start(&self.take.shot.output, self.take.picture.size(), self.take.picture.samples(), course);
-        let watch = Watch { reporter, interrupts, control, samples: goal, time: plan.time, course };
+        let goal = match (self.take.picture.limit(), plan.time) {
+            (Limit::Noise(level), _) => Goal::Noise(&self.film, *level),
+            (_, Some(time)) => Goal::Time(time, goal),
+            _ => Goal::Samples(goal),
+        };
+        let samples = matches!(goal, Goal::Samples(_)).then_some(self.take.picture.samples());
+        reporter.start(&self.take.shot.output, self.take.picture.size(), samples, course);
+        let watch = Watch { reporter, interrupts, control, goal, course };
         let work = || self.take.picture.expose(&self.film, control);
         let result = watched(&watch, || match (kept, &plan.checkpoint) {
             (Some(kept), Some(Keeping { every, .. })) => self.keeping(kept, *every, work),
@@ -226,11 +250,6 @@ impl Exposure<'_> {
     /// All pixels, the noise taken out of them where that is wished for.
     fn pixels(&self, control: &Control) -> Result<Option<Vec<Rgb>>, Failure> {
         let Some(denoiser) = self.session.plan.settings.denoiser else { return Ok(None) };
-        if self.take.picture.samples() < 2 {
-            return Err(Failure::Wrong(
-                "--denoise needs 2 samples a pixel or more: their differences are what it goes by".into(),
-            ));
-        }
         let library = std::env::var_os("JUGGLER_OIDN").map(PathBuf::from);
         let guides = self.take.picture.guides(&self.film);
         let denoised = guides.denoise(denoiser, library.as_deref(), control)?;
@@ -265,8 +284,20 @@ impl Exposure<'_> {
         Ok(with_picture)
     }
 
-    /// Writes the picture or the part; `pixels` are those of the picture where they are not the film's.
-    fn write(&mut self, pixels: Option<&[Rgb]>) -> Result<Summary, Failure> {
+    /// Writes the AOVs that have a file of their own or none; whether the picture is written too,
+    /// and what went wrong with a file beside the picture.
+    fn write_beside(&self, pixels: Option<&[Rgb]>) -> Result<(bool, Result<(), Failure>), Failure> {
+        let Shot { output, layers_output, .. } = self.take.shot;
+        match self.write_layers(pixels) {
+            Ok(in_picture) => Ok((in_picture, Ok(()))),
+            Err(failure) if layers::place(output, layers_output.as_deref()) == Place::InPicture => Err(failure),
+            Err(failure) => Ok((false, Err(failure))),
+        }
+    }
+
+    /// Writes the picture or the part; `pixels` are those of the picture where they are not the
+    /// film's. And what went wrong beside it.
+    fn write(&mut self, pixels: Option<&[Rgb]>) -> Result<(Summary, Result<(), Failure>), Failure> {
         let (picture, output) = (self.take.picture, &self.take.shot.output);
         match self.session.plan.product {
             Product::Part => {
@@ -274,27 +305,32 @@ impl Exposure<'_> {
                 if self.take.shot.checkpoint.as_ref() != Some(output) {
                     write(Path::new(output), &self.description, self.film.tiles())?;
                 }
-                Ok(picture.develop(&self.film, |_| Ok::<(), Failure>(()))?)
+                Ok((picture.develop(&self.film, |_| Ok::<(), Failure>(()))?, Ok(())))
             }
             Product::Picture(encoding) => {
+                if *picture.limit() != Limit::Samples {
+                    let spread = Spread::of_film(&self.film).to_string();
+                    self.header.metadata.push((SAMPLES.to_owned(), spread));
+                }
                 if matches!(picture.limit(), Limit::Time { .. }) {
                     let counts = counts::to_text(&self.film.counts());
                     self.header.metadata.push((SAMPLES_PER_TILE.to_owned(), counts));
                 }
-                let in_picture = self.write_layers(pixels)?;
+                let (in_picture, beside) = self.write_beside(pixels)?;
                 let writer = || self.session.writer(encoding.format, output, &self.header);
-                match pixels {
-                    None if in_picture => picture.develop(&self.film, |_| Ok(())),
-                    None => Ok(picture.write_film(&self.film, writer()?)?),
+                let summary = match pixels {
+                    None if in_picture => picture.develop(&self.film, |_| Ok::<(), Failure>(()))?,
+                    None => picture.write_film(&self.film, writer()?)?,
                     Some(pixels) => {
                         if !in_picture {
                             let mut writer = writer()?;
                             writer.write_rows(pixels)?;
                             writer.finish()?;
                         }
-                        Ok(summary_of(pixels, picture, &self.film))
+                        summary_of(pixels, picture, &self.film)
                     }
-                }
+                };
+                Ok((summary, beside))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! `juggler render`: one picture, or the pictures of an animation.
 
 mod film;
+mod folder;
 mod memory;
 mod reel;
 mod studio;
@@ -8,45 +9,52 @@ mod studio;
 use crate::args::RenderArgs;
 use crate::console;
 use crate::failure::Failure;
-use crate::format::{amount, clamping, counted, duration};
+use crate::format::{amount, clamping, counted, duration, samples};
 use crate::interrupt::Interrupts;
 use crate::output::{self, STANDARD_OUTPUT};
-use crate::plan::{Plan, Product, Reel, Shard, Shot};
-use crate::progress::{Course, Reporter, Watch, watched};
+use crate::plan::{Plan, Product, Reel, Shard, Shot, beyond_the_end, effect};
+use crate::progress::{Course, Goal, Reporter, Watch, watched};
 use crate::reproduce;
 use crate::source;
 use crate::stats::{Seconds, Stats, rays_per_second};
+use folder::{Folder, Use};
 use juggler::imaging::{self, AnimationHeader, Format, Header, RowWriter, Tone};
 use juggler::memory::Effort;
 use juggler::scene::Scene;
 use juggler::tracer::film::Rect;
 use juggler::tracer::render::Control;
 use juggler::{Outcome, Picture};
-use reel::{Encoder, Folder, Use};
+use reel::Encoder;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use studio::Studio;
 
-/// Shown after the help.
+/// Shown after the short help.
+pub const MORE: &str = "\
+`juggler render --help` tells all flags, with examples.";
+
+/// Shown after the whole help.
 pub const EXAMPLES: &str = "\
 Examples:
   juggler render juggler                                     the built-in scene, into juggler.png
   juggler render scene.json -o big.exr --size 3840x2160 --samples 256
   juggler render juggler --frames 0..30 -o 'frame_####.png'
-  juggler render juggler -o juggler.mp4                      all frames as a film, also .webp .apng .gif
-  juggler render juggler -o juggler.mp4 --shard 0/3          a third of its frames; without --shard they become the film
+  juggler render juggler -o juggler.mp4                      all frames as a movie, also .webp .apng .gif
+  juggler render juggler -o juggler.mp4 --shard 0/3          a third of its frames; without --shard they become the movie
   juggler render scene.json -o - | display                   the picture to another program
   juggler render scene.json --noise 0.02                     until it is good enough
   juggler render scene.json --checkpoint scene.jfilm         the same command again goes on where it ended
   juggler render scene.json --shard 3/40 -o part3.jfilm      a fortieth of it; `juggler merge` joins them
   juggler info scene.png                                     how that picture was made
 
-Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed, 130 or 143 interrupted.";
+Exit status: 0 done, 2 the command line or the scene is wrong, 3 a file or the system failed,
+129, 130 or 143 interrupted.";
 
 /// Renders what was asked for.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let plan = Plan::new(args)?;
+    output::check_stream(&plan.output)?;
     Session { reporter: plan.progress.reporter(), plan }.all(start)
 }
 
@@ -78,10 +86,16 @@ struct Take<'t> {
 impl Session {
     fn all(self, start: Instant) -> Result<(), Failure> {
         let scene = source::load(&self.plan.scene, self.plan.max_memory)?;
+        effect::check_scene(&self.plan.settings, &scene)?;
         let animation = scene.description.animation;
         let header = self.plan.reel.as_ref().map(|reel| self.header(reel, &scene)).transpose()?;
         let shots = self.plan.shots(animation.frames, animation.frames_per_second)?;
+        self.warn_of_settings(&scene);
         let Some((reel, header)) = self.plan.reel.as_ref().zip(header) else {
+            let files = shots.first().map(|Shot { output, layers_output, checkpoint, .. }| {
+                [Some(output), layers_output.as_ref(), checkpoint.as_ref()]
+            });
+            files.into_iter().flatten().flatten().try_for_each(|file| output::check_folder(file))?;
             return self.frames(&scene, &shots, start, |_| true);
         };
         // What needs more memory than it may have is refused before anything is there, too.
@@ -199,19 +213,31 @@ impl Session {
             self.tell_left(take.shot)?;
             return Ok(false);
         }
-        let outcome = match self.plan.product {
+        let (outcome, beside) = match self.plan.product {
             Product::Picture(encoding) if !self.plan.needs_film(take.shot) => {
-                self.render(take, encoding.format, &header, interrupts)?
+                (self.render(take, encoding.format, &header, interrupts)?, Ok(()))
             }
             _ => film::render(self, take, header, interrupts)?,
         };
-        self.report(take, &outcome).map(|()| true)
+        self.report(take, &outcome)?;
+        beside.map(|()| true)
     }
 
     fn warn(&self, picture: &Picture) {
         let warnings = &picture.compiled().warnings;
         if !self.plan.quiet && !warnings.list().is_empty() {
             console::say(&warnings.render(console::color()));
+        }
+    }
+
+    /// Warns of settings of the scene's tone that the format of the picture ignores, and of frames
+    /// beyond the end.
+    fn warn_of_settings(&self, scene: &Scene) {
+        let frames = scene.description.animation.frames;
+        let last = self.plan.frames(frames).end.saturating_sub(1);
+        let tone = effect::idle_tone(self.plan.target(), &scene.description.tone);
+        for warning in tone.into_iter().chain(beyond_the_end(last, frames)).filter(|_| !self.plan.quiet) {
+            console::say(&warning);
         }
     }
 
@@ -227,9 +253,9 @@ impl Session {
         let control = Control::default();
         let writer = self.writer(format, &shot.output, header)?;
         let course = take.moment.course;
-        self.reporter.start(&shot.output, picture.size(), picture.samples(), course);
-        let samples = picture.total_samples();
-        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, samples, time: None, course };
+        self.reporter.start(&shot.output, picture.size(), Some(picture.samples()), course);
+        let goal = Goal::Samples(picture.total_samples());
+        let watch = Watch { reporter: &self.reporter, interrupts, control: &control, goal, course };
         watched(&watch, || picture.write(writer, &control)).map_err(|error| {
             self.reporter.clear();
             interrupts.caught().unwrap_or_else(|| error.into())
@@ -277,7 +303,7 @@ impl Session {
             return Ok(());
         }
         let [width, height] = picture.size();
-        let samples = counted(picture.samples().into(), "sample");
+        let samples = samples(&outcome.samples);
         let rate = amount(rays_per_second(&outcome.rays, seconds.render));
         let took = duration(total);
         self.tell(&format!("{}: {width}x{height}, {samples}, {took}, {rate} rays/s{clamping}{lost}", shot.output))

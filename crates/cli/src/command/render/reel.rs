@@ -1,95 +1,20 @@
 //! From finished frames to a film. Frames are kept as pictures beside the film until it is complete: what ends early
 //! leaves them, and the same command goes on with them, to the same bytes.
 
-use super::film::forget;
+use super::folder::{Folder, Use};
 use crate::failure::Failure;
 use crate::output::STANDARD_OUTPUT;
 use crate::plan::{Reel, Shot};
 use juggler::imaging::{self, AnimationHeader, FrameWriter, Header};
-use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
 
 /// Frames that wait to be encoded while the next are rendered.
 const WAITING: usize = 2;
-/// The file in a folder of frames by which processes know of each other.
-const LOCK: &str = ".lock";
-/// How long to wait for it.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The text of a picture that says its tone, where it is not the usual one.
 pub const TONE: &str = "Tone";
-
-/// How a process uses a folder of frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
-    /// It puts frames there, as others may.
-    Shared,
-    /// It makes the film and clears the frames away.
-    Alone,
-}
-
-/// A folder of frames. The system lets go of the lock when the process ends, however it ends.
-pub struct Folder {
-    path: String,
-    _lock: Option<File>,
-}
-
-impl Folder {
-    /// Makes it where there is none.
-    pub fn open(path: &str, purpose: Use) -> Result<Self, Failure> {
-        match fs::create_dir(path) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-                return Err(Failure::file("create", path, &error));
-            }
-            _ => {}
-        }
-        let name = format!("{path}/{LOCK}");
-        let file = File::options().create(true).append(true).open(&name);
-        let file = file.map_err(|error| Failure::file("write", &name, &error))?;
-        match locked(&file, purpose) {
-            Ok(()) => Ok(Self { path: path.into(), _lock: Some(file) }),
-            Err(TryLockError::WouldBlock) => Err(Failure::System(format!(
-                "other processes are at work in `{path}`: the same command can make the film when they are done"
-            ))),
-            // Some network disks know no locks; frames appear whole or not at all in any case.
-            Err(TryLockError::Error(_)) => Ok(Self { path: path.into(), _lock: None }),
-        }
-    }
-
-    /// Clears away what processes that were killed left of these frames, and the folder unless somebody keeps something
-    /// else in it.
-    fn clear(self, frames: &[PathBuf]) -> Result<(), Failure> {
-        for frame in frames {
-            fs::remove_file(frame).map_err(|error| Failure::file("remove", frame.display(), &error))?;
-            forget(&frame.with_extension("jfilm").to_string_lossy());
-        }
-        for entry in fs::read_dir(&self.path).into_iter().flatten().flatten() {
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            if name.starts_with(".frame_") && name.ends_with(".part") || name == LOCK {
-                let _ = fs::remove_file(entry.path());
-            }
-        }
-        let _ = fs::remove_dir(&self.path);
-        Ok(())
-    }
-}
-
-/// Takes the lock. A process that was killed a moment ago may still have it until the system has cleared it away.
-fn locked(file: &File, purpose: Use) -> Result<(), TryLockError> {
-    let patient_until = Instant::now() + PATIENCE;
-    loop {
-        let locked = if purpose == Use::Shared { file.try_lock_shared() } else { file.try_lock() };
-        match locked {
-            Err(TryLockError::WouldBlock) if Instant::now() < patient_until => thread::sleep(PATIENCE / 40),
-            other => return other,
-        }
-    }
-}
 
 /// Puts finished frames into a film while the next are rendered.
 pub struct Encoder {

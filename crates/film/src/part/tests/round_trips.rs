@@ -94,16 +94,19 @@ fn descriptions_that_cannot_be_are_refused() {
 
 #[test]
 fn mismatches_are_named() {
-    let one = description(REGION, 100);
+    let mut one = description(REGION, 100);
+    one.fingerprint.insert("materials".into(), "0a".repeat(16));
     assert_eq!(one.mismatches(&Description { command: String::new(), finished: false, ..one.clone() }), []);
     let mut other = Description { stop: Stop::Noise { level: 0.01 }, size: [50, 60], ..one.clone() };
     other.fingerprint.remove("seed");
     other.fingerprint.insert("scene".into(), "0".into());
     other.fingerprint.insert("zeal".into(), "1".into());
+    other.fingerprint.insert("materials".into(), "0b".repeat(16));
     let words: Vec<String> = one.mismatches(&other).iter().map(ToString::to_string).collect();
     let expected = [
         "size: 50x60 instead of 45x23",
         "stop: noise 0.01 instead of samples",
+        "materials: not the same",
         "scene: 0 instead of 5ce4e",
         "seed: nothing instead of 7",
         "zeal: 1 instead of nothing",

@@ -1,0 +1,101 @@
+//! What the parser of command lines suggests after a flag that does not exist. The parser's own
+//! tips mislead where another program's flag was typed: these come first.
+
+use clap::Error;
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use juggler::scene::suggest;
+
+/// Flags of other programs, and what does the same here.
+const FOREIGN: &[(&[&str], &str)] = &[
+    (
+        &["--width", "--height", "-W", "-H", "--resolution", "--res", "--dimensions", "--geometry"],
+        "--size WxH sets width and height, such as --size 640x360",
+    ),
+    (&["-s", "--spp", "--sample", "--sample-count", "--num-samples"], "--samples N sets the samples per pixel"),
+    (&["-t", "-j", "--jobs", "--nthreads", "--num-threads"], "--threads N sets the number of threads"),
+    (&["--bounces", "--max-bounces", "--depth", "--path-depth"], "--max-depth N limits the depth of paths"),
+    (&["--out", "--outfile", "--output-file", "-O"], "-o FILE, or --output FILE, says where the picture goes"),
+    (&["--timeout", "--time-limit", "--seconds"], "--time SECONDS ends the render after that time"),
+    (&["--threshold", "--noise-threshold", "--error"], "--noise LEVEL ends the render when the noise is below that"),
+    (&["--passes", "--layers", "--channels"], "--aov LIST names what is written beside the picture"),
+    (&["--start", "--end", "-f", "-a", "--frame-range", "--animation"], "--frames A..B renders several frames"),
+    (&["--gamma", "--tonemap", "--tonemapper", "--tone-mapping"], "--tone CURVE sets the tone curve"),
+    (&["--ev", "--gain"], "--exposure STOPS makes the picture brighter or darker"),
+    (&["--cam", "--view"], "--camera NAME chooses one of the scene's cameras"),
+    (&["--region", "--window", "--cropwindow"], "--crop X,Y,W,H renders a part of the picture"),
+    (&["--resume", "--continue"], "--checkpoint FILE keeps the work; the same command goes on with it"),
+    (&["-v", "--verbose"], "--progress bar shows how far it is, --stats FILE writes what was done"),
+    (&["-V"], "`juggler --version` prints the version"),
+];
+
+/// The same error with a tip that helps, or none.
+pub fn mended(mut error: Error) -> Error {
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg).cloned() else { return error };
+    let name = flag.split([' ', '=']).next().unwrap_or_default();
+    let ours = FOREIGN.iter().find(|(names, _)| names.contains(&name)).map(|(_, tip)| *tip);
+    let keeps_suggestion = match error.get(ContextKind::SuggestedArg) {
+        Some(ContextValue::String(suggested)) => ours.is_none() && suggest::closest(name, [bare(suggested)]).is_some(),
+        _ => false,
+    };
+    if !keeps_suggestion {
+        error.remove(ContextKind::SuggestedArg);
+    }
+    // A flag is rarely a value.
+    error.remove(ContextKind::Suggested);
+    if let Some(tip) = ours {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
+    }
+    error
+}
+
+/// `--samples <N>` without its value.
+fn bare(flag: &str) -> &str {
+    flag.split([' ', '=', '[']).next().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::args::Args;
+    use clap::ColorChoice;
+    use std::ffi::OsString;
+
+    fn refused(line: &str) -> String {
+        let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+        Args::parse_words(&words, ColorChoice::Never).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn flags_of_other_programs_lead_to_ours() {
+        for (typed, told) in [
+            ("--width 640", "--size WxH"),
+            ("--width=640", "--size WxH"),
+            ("-s 4", "--samples N"),
+            ("--spp 4", "--samples N"),
+            ("-j 4", "--threads N"),
+        ] {
+            let message = refused(&format!("juggler render a {typed}"));
+            assert!(message.contains(&format!("tip: {told}")), "{message}");
+            assert!(!message.contains("as a value") && !message.contains("--white-balance"), "{message}");
+        }
+    }
+
+    #[test]
+    fn slips_keep_their_suggestion_and_strangers_get_none() {
+        assert!(refused("juggler render a --smaples 4").contains("'--samples'"));
+        assert!(!refused("juggler render a --zebra").contains("tip:"));
+    }
+
+    #[test]
+    fn negative_numbers_are_values_of_flags() {
+        for flag in ["--samples -4", "--threads -1", "--seed -7", "--time -3"] {
+            let message = refused(&format!("juggler render a {flag}"));
+            let value = flag.split(' ').nth(1).unwrap();
+            assert!(message.contains(&format!("'{value}'")) && !message.contains("as a value"), "{message}");
+            assert!(!message.contains("unexpected"), "{message}");
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The console blocks of README.md say what happens: their commands are run, and what they print is
+//! compared.
+#![cfg(target_os = "linux")]
+
+use crate::harness::{self, Folder, Run, wait_until};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+const README: &str = include_str!("../../../../README.md");
+
+/// The scene whose mistakes README shows.
+const WRONG: &str = r##"{
+  "version": 1,
+  "materials": {"red": {"phong": {"diffuse": "#c02020"}}},
+  "objects": [
+    {"shape": {"spere": {"radius": 1}}, "material": "red"},
+    {"shape": "sphere", "material": "rde"}
+  ]
+}
+"##;
+
+/// A command of a console block, with the lines that README shows after it.
+struct Step {
+    command: String,
+    shown: Vec<String>,
+}
+
+/// The console blocks.
+fn blocks() -> Vec<Vec<Step>> {
+    let blocks = README.split("```console\n").skip(1).filter_map(|rest| rest.split("```").next());
+    blocks.map(|block| steps(block).collect()).collect()
+}
+
+fn steps(block: &str) -> impl Iterator<Item = Step> {
+    let commands = block.trim_end().split("$ ").filter(|command| !command.is_empty());
+    commands.map(|command| {
+        let mut lines = command.lines().map(str::to_owned);
+        let command = lines.next().unwrap_or_default();
+        Step { command, shown: lines.collect() }
+    })
+}
+
+/// Starts what is typed into a shell that finds the program; the shell becomes it where nothing
+/// else is to be done.
+fn typed(folder: &Folder, line: &str) -> Child {
+    let program = Path::new(env!("CARGO_BIN_EXE_juggler")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let simple = !line.contains(['|', '&']);
+    let line = if simple { format!("exec {line} 2>&1") } else { line.to_owned() };
+    let mut command = Command::new("sh");
+    command.args(["-c", &line]).env("PATH", path).current_dir(folder.path("."));
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Presses Ctrl-C as soon as the program has its own way of taking that.
+fn interrupt(child: &Child) {
+    let status = format!("/proc/{}/status", child.id());
+    let catches = || {
+        let status = fs::read_to_string(&status).unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).map(str::trim);
+        mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask & 2 != 0)
+    };
+    wait_until("the program to watch for signals", catches);
+    harness::signal(child, "-INT");
+}
+
+/// What a command prints; after `^C` the program goes on until it is interrupted.
+fn run(folder: &Folder, step: &Step) -> Vec<String> {
+    let child = typed(folder, &step.command);
+    let is_interrupted = step.shown.first().is_some_and(|line| line == "^C");
+    if is_interrupted {
+        interrupt(&child);
+    }
+    let Run { stdout, .. } = Run::of(child.wait_with_output().unwrap());
+    let typed = is_interrupted.then(|| "^C".to_owned());
+    typed.into_iter().chain(stdout.lines().map(str::to_owned)).collect()
+}
+
+/// Whether two lines say the same, whatever the machine's speed.
+fn alike(shown: &str, printed: &str) -> bool {
+    let pairs = shown.split_whitespace().zip(printed.split_whitespace());
+    let same_length = shown.split_whitespace().count() == printed.split_whitespace().count();
+    same_length && pairs.into_iter().all(|(a, b)| a == b || (is_measured(a) && is_measured(b)))
+}
+
+/// `1.21s,`, `9m56s`, `41.2`, `million`: what depends on the machine.
+fn is_measured(word: &str) -> bool {
+    let number = word.starts_with(|c: char| c.is_ascii_digit());
+    let unit = word.trim_end_matches(',').trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let is_time = unit.is_empty() || unit == "s" || unit == "ms" || (unit.starts_with('m') && unit.ends_with('s'));
+    (number && is_time) || ["thousand", "million", "billion"].contains(&word)
+}
+
+#[test]
+fn the_readme_shows_what_is_printed() {
+    let folder = Folder::new();
+    fs::write(folder.path("wrong.json"), WRONG).unwrap();
+    let blocks = blocks();
+    assert!(blocks.iter().flatten().count() >= 6);
+    for step in blocks.iter().flatten() {
+        let printed = run(&folder, step);
+        let same = printed.len() == step.shown.len();
+        assert!(
+            same && step.shown.iter().zip(&printed).all(|(shown, printed)| alike(shown, printed)),
+            "`{}` prints\n{}\nREADME shows\n{}",
+            step.command,
+            printed.join("\n"),
+            step.shown.join("\n")
+        );
+    }
+}
+
+#[test]
+fn differences_are_seen() {
+    assert!(alike("a: 64 samples, 1.21s, 7.1 million rays/s", "a: 64 samples, 850ms, 950 thousand rays/s"));
+    assert!(!alike("the same file", "the same files") && !alike("\"hash\":\"1f\"", "\"hash\":\"2f\""));
+    assert!(!alike("2 errors", "2 errors found"));
+}
