@@ -1,5 +1,7 @@
 //! `juggler merge`: parts of a picture become the picture, or a larger part.
 
+mod memory;
+
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, clamping, counted, duration};
@@ -7,6 +9,7 @@ use crate::output::{self, STANDARD_OUTPUT};
 use crate::plan::layers::{self, Place};
 use crate::plan::{Encoding, PART_ENDING};
 use crate::stats::{self, Clamped};
+use crate::value;
 use clap::Args;
 use juggler::denoise::Guides;
 use juggler::film::{self, Description, Wanted};
@@ -48,6 +51,9 @@ pub struct Merge {
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
+    /// Refuse, before any tile is joined, what needs more memory than this
+    #[arg(long, value_name = "SIZE", value_parser = value::memory)]
+    max_memory: Option<u64>,
 }
 
 /// What was made.
@@ -79,6 +85,9 @@ impl Merge {
         let (merge, made) = if is_part {
             self.check_part_flags()?;
             let merge = film::Merge::open(&self.parts, Wanted::Part)?;
+            if self.max_memory.is_some() {
+                memory::check(&merge, &LayerSet::of_part(&merge.description().layers)?, None, self.max_memory)?;
+            }
             let made = Made::Part(merge.write(Path::new(&self.output))?);
             (merge, made)
         } else {
@@ -106,6 +115,7 @@ impl Merge {
             .map_err(|error| Failure::System(format!("the parts' tone curve cannot be read: {error}")))?;
         let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
         let set = LayerSet::of_part(&merge.description().layers)?;
+        memory::check(merge, &set, Some((format, &header, self.output != STANDARD_OUTPUT)), self.max_memory)?;
         let mut layers = self.layers(&set, &header)?;
         let with_picture = layers.as_ref().is_some_and(|(_, with_picture)| *with_picture);
         let mut writer = match self.output.as_str() {
