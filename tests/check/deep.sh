@@ -1,7 +1,7 @@
 # `check.sh deep`: what takes too long for every change. Each part takes an hour at most.
 # shellcheck shell=bash
 
-deep_parts=(dist matrix noise rays furnaces memory kills web cluster)
+deep_parts=(dist matrix noise rays furnaces memory kills fuzz bombs web cluster)
 
 check_deep() {
   local part
@@ -65,6 +65,15 @@ deep_memory() { cargo test --release --locked -p juggler-cli --test program -- m
 
 # Renders killed at random moments and continued.
 deep_kills() { cargo run --release --locked -p juggler-golden --bin kill-test -- 100 1; }
+
+# 28,000 mutations of files, and 20,000 scenes whose numbers are extreme, in processes whose address space is limited.
+deep_fuzz() { JUGGLER_MUTATIONS=2000 JUGGLER_FIELDS=20000 cargo test --release --locked -p juggler-fuzz --test hostile; }
+
+# Small files and command lines that ask for much, given to the optimized program.
+deep_bombs() {
+  cargo build --release --locked -p juggler-cli
+  cargo run --release --locked -p juggler-fuzz --bin bombs -- "$programs/release/juggler"
+}
 
 # The page that renders in the browser alone; its compiler and standard library are large downloads.
 deep_web() { step_web; }

@@ -6,6 +6,7 @@ mod console;
 mod failure;
 mod format;
 mod interrupt;
+mod memory;
 mod output;
 mod plan;
 mod progress;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::format::bytes;
-use juggler::scene::document::bytes_to_read;
+use juggler::scene::document::{bytes_to_read, read_text};
 use juggler::scene::{Scene, named};
 use std::io::Read;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     let path = Path::new(name);
     if most.is_some() && path.is_file() {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
-        check_memory(std::fs::read(path).map_or(0, |text| bytes_to_read(&text)), name, most)?;
+        check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
     }
     Ok(Scene::named(name)?)
 }

@@ -31,7 +31,7 @@ pub enum ImageError {
         most: u32,
     },
     /// The system could not read.
-    #[error("{place}: cannot be read: {source}")]
+    #[error("cannot read `{place}`: {source}")]
     Read {
         /// The file.
         place: String,
@@ -46,8 +46,8 @@ pub enum ImageError {
         /// What the system says.
         source: io::Error,
     },
-    /// The file is damaged, cut short, or something else than its start says.
-    #[error("{place}: not a readable {format} file: {message}")]
+    /// The file is damaged, or uses what is not read of its format.
+    #[error("cannot read `{place}`: {message} ({format}{})", at.map_or_else(String::new, |at| format!(", byte {at}")))]
     Malformed {
         /// The file.
         place: String,
@@ -55,15 +55,51 @@ pub enum ImageError {
         format: Format,
         /// What is wrong.
         message: String,
+        /// The byte at which reading stopped, if the decoder reads byte by byte.
+        at: Option<u64>,
     },
-    /// The first bytes are those of no picture that we read.
-    #[error("{place}: not a picture in a known format ({})", Format::endings())]
+    /// The file is cut short.
+    #[error("cannot read `{place}`: unexpected end of file at byte {at}")]
+    Truncated {
+        /// The file.
+        place: String,
+        /// Bytes that are there.
+        at: u64,
+    },
+    /// The head of the file claims a size that its bytes cannot hold, however well they are compressed.
+    #[error("cannot read `{place}`: {width} × {height} pixels are more than a {format} file of {bytes} bytes can hold")]
+    Claim {
+        /// The file.
+        place: String,
+        /// The format that its first bytes say.
+        format: Format,
+        /// Pixels in a row.
+        width: u64,
+        /// Rows.
+        height: u64,
+        /// Bytes of the file.
+        bytes: u64,
+    },
+    /// The first bytes are those of no picture that is read.
+    #[error("cannot read `{place}`: its first bytes are those of no known picture format ({})", Format::endings())]
     UnknownContent {
         /// The file.
         place: String,
     },
+    /// A side is longer than the caller allows.
+    #[error("cannot read `{place}`: {width} × {height} pixels, a side is {longest_side} pixels at most")]
+    TooLong {
+        /// The file.
+        place: String,
+        /// Pixels in a row.
+        width: u64,
+        /// Rows.
+        height: u64,
+        /// The longest side that is allowed.
+        longest_side: u32,
+    },
     /// The user allows more, or makes the picture smaller.
-    #[error("{place}: {width} × {height} pixels are more than the limit of {most_pixels} pixels")]
+    #[error("cannot read `{place}`: {width} × {height} pixels are more than the limit of {most_pixels} pixels")]
     TooLarge {
         /// The file.
         place: String,

@@ -10,6 +10,7 @@
 //! - [`layered`]: files of many layers;
 //! - [`animation`]: files of moving pictures;
 //! - [`output`], [`atomic`]: where bytes go; an existing picture is replaced only by a finished one;
+//! - [`regular`]: opening files, and refusing what is no file;
 //! - [`input`]: from a file to an image;
 //! - [`raster`]: from a file to its samples as they are;
 //! - [`mod@compare`]: how much two images differ;
@@ -27,6 +28,7 @@ pub mod layered;
 pub mod look;
 pub mod output;
 pub mod raster;
+pub mod regular;
 pub mod significance;
 pub mod tone;
 mod viewpoint;

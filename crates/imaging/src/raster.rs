@@ -1,8 +1,8 @@
 //! Pictures as their files have them, for textures: levels as they are, alpha included, and by which curve levels stand for
 //! light.
 
-use crate::codec::{self, Source};
-use crate::input::{open, sniff};
+use crate::codec;
+use crate::input::{open, source};
 use crate::tone::{Curve, Gamma, Srgb};
 use crate::{Format, ImageError, Limits};
 use std::io::{BufRead, Seek};
@@ -80,12 +80,11 @@ impl Encoding {
 /// Reads a picture from bytes; `place` is how messages call them.
 pub fn decode_raster(place: &str, bytes: impl BufRead + Seek, limits: &Limits) -> Result<Raster, ImageError> {
     let mut bytes = bytes;
-    let format = sniff(place, &mut bytes)?;
-    let source = Source { place, format, limits };
+    let source = source(place, &mut bytes, limits)?;
     let raster = codec::raster(source, &mut bytes)?;
     let Layout { width, height, channels, .. } = raster.layout;
     if raster.samples.len() as u64 != u64::from(width) * u64::from(height) * u64::from(channels) {
-        return Err(source.malformed("it ends too early"));
+        return Err(source.malformed(codec::ENDS));
     }
     Ok(raster)
 }
@@ -93,7 +92,5 @@ pub fn decode_raster(place: &str, bytes: impl BufRead + Seek, limits: &Limits) -
 /// Reads what a picture is, and no pixels, whatever its size. For floats it is not known yet whether all are halves.
 pub fn inspect_raster(path: &Path) -> Result<Layout, ImageError> {
     let (place, mut bytes) = (path.display().to_string(), open(path)?);
-    let format = sniff(&place, &mut bytes)?;
-    let limits = &Limits { most_pixels: u64::MAX };
-    codec::layout(Source { place: &place, format, limits }, &mut bytes)
+    codec::layout(source(&place, &mut bytes, &Limits::NONE)?, &mut bytes)
 }

@@ -5,12 +5,13 @@ mod values;
 mod words;
 
 use crate::{Denoiser, Error, check_name};
-use juggler_film::part::Layered;
+use juggler_film::part::{Layered, MAX_PLANES};
 use juggler_imaging::Header;
 use juggler_imaging::layered::{LayerHeader, LayeredHeader};
 use juggler_scene::Names;
 use juggler_tracer::layer::{Beside, Guide, Layer, Layers, LightGroup};
 use juggler_tracer::material::MaterialId;
+use std::collections::HashSet;
 
 /// The largest factor on the light of a group.
 pub const MOST_GAIN: f32 = 1e6;
@@ -142,7 +143,8 @@ impl Aov {
             Self::Direct => vec![Layer::Direct],
             Self::Indirect => vec![Layer::Indirect],
             Self::LightGroups => {
-                (0..).zip(&names.light_groups).map(|(number, _)| Layer::Group(LightGroup(number))).collect()
+                let numbers = (0..names.light_groups.len()).filter_map(|number| u16::try_from(number).ok());
+                numbers.map(|number| Layer::Group(LightGroup(number))).collect()
             }
             Self::ObjectId
             | Self::MaterialId
@@ -175,6 +177,7 @@ impl LayerSet {
     pub fn new(wanted: &[Aov], denoiser: Option<Denoiser>, names: &Names) -> Self {
         let wanted: Vec<Aov> = Aov::ALL.into_iter().filter(|aov| wanted.contains(aov)).collect();
         let mut planes: Vec<Layer> = Vec::new();
+        let mut known = HashSet::new();
         let guide = Guide::ALL.into_iter().flat_map(|guide| {
             let whole = (guide != Guide::Color).then_some(Layer::Guide(guide));
             let half = (denoiser == Some(Denoiser::Own)).then_some(Layer::Half(guide));
@@ -182,15 +185,31 @@ impl LayerSet {
         });
         let needed = wanted.iter().flat_map(|aov| aov.needs(names));
         for layer in needed.chain(guide.filter(|_| denoiser.is_some())) {
-            if !planes.contains(&layer) {
+            if known.insert(layer) {
                 planes.push(layer);
             }
         }
         let masks = wanted.iter().any(|aov| aov.needs_masks());
         let names = if wanted.is_empty() { Names::default() } else { names.clone() };
         let mut set = Self { layers: Layers { planes, masks }, wanted, names, denoiser, channels: 0 };
-        set.channels = set.headers().iter().map(|layer| layer.channels.len()).sum();
+        set.channels = set.wanted.iter().map(|aov| set.channels_of(*aov)).sum();
         set
+    }
+
+    /// How many channels all layers have in a file.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// Whether a film can keep all of it.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let (planes, groups) = (self.layers.planes.len(), self.light_groups().len());
+        if planes <= MAX_PLANES as usize {
+            return Ok(());
+        }
+        Err(Error::Settings(format!(
+            "the layer `light_groups` is {groups} layers, a picture keeps {MAX_PLANES} at most"
+        )))
     }
 
     /// What takes the noise out of the picture, whose film keeps what that is guided by.
@@ -263,6 +282,15 @@ impl LayerSet {
     /// The layers of a file, in order, without the picture itself.
     pub fn headers(&self) -> Vec<LayerHeader> {
         self.wanted.iter().flat_map(|aov| self.headers_of(*aov)).collect()
+    }
+
+    /// How many channels the layers of a file have for it.
+    fn channels_of(&self, aov: Aov) -> usize {
+        match aov {
+            // Without the names of everything that they tell apart.
+            Aov::CryptoObject | Aov::CryptoMaterial => cryptomatte::CHANNELS,
+            other => self.headers_of(other).iter().map(|layer| layer.channels.len()).sum(),
+        }
     }
 
     fn headers_of(&self, aov: Aov) -> Vec<LayerHeader> {

@@ -88,6 +88,7 @@ impl Picture {
         of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
         let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser, &compiled.names));
+        layers.check()?;
         let beside = FramesBeside::of(plain, settings, &compiled, &shot, &layers)?;
         let band_pixels = BAND_PIXELS;
         let mut picture =

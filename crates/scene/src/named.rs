@@ -22,7 +22,8 @@ impl Scene {
     /// A scene file; what is no file may be the name of a built-in scene.
     pub fn named(name: &str) -> Result<Self, SceneError> {
         let path = Path::new(name);
-        if path.exists() && !path.is_dir() {
+        // A link that leads nowhere is told as such.
+        if (path.exists() || path.is_symlink()) && !path.is_dir() {
             return Self::load(path);
         }
         if built_in_scenes().iter().any(|scene| scene.name == name) {

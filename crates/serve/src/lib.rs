@@ -19,5 +19,6 @@ mod server;
 mod socket;
 mod wheel;
 
+pub use message::is_allowed;
 pub use picture::HEADER_BYTES;
 pub use server::{Limits, Options, Running, ServeError, Server};

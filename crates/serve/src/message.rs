@@ -60,6 +60,14 @@ impl ToPage<'_> {
     }
 }
 
+/// Whether a text is a message that a page on this machine may send, whoever steers.
+pub fn is_allowed(text: &str) -> bool {
+    match serde_json::from_str(text) {
+        Ok(FromPage::Edit(edit)) => crate::edits::check(&edit, None, true).is_ok(),
+        other => other.is_ok(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,7 @@
 //! left out; what denoising is guided by is what it met behind mirrors and clear glass.
 
 /// A layer of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layer {
     /// How much of the pixel shows anything; second, how many samples were no finite numbers; third, how many were clamped.
     Coverage,
@@ -38,7 +38,7 @@ pub enum Layer {
 }
 
 /// One of the frames beside the one that is rendered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Beside {
     /// The one before.
     Previous,
@@ -47,7 +47,7 @@ pub enum Beside {
 }
 
 /// Lights that are kept apart from others, by number.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct LightGroup(pub u16);
 
 impl LightGroup {
@@ -56,7 +56,7 @@ impl LightGroup {
 }
 
 /// What denoising is guided by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Guide {
     /// Radiance itself.
     Color,

@@ -1,5 +1,6 @@
 //! `juggler compare`: how different two pictures are, and whether that is more than noise.
 
+mod memory;
 mod noise;
 mod side;
 
@@ -40,6 +41,9 @@ pub struct Compare {
     /// Write the numbers as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     stats: Option<String>,
+    /// Stay within so much memory: FLIP is left out where it needs more; pictures that do are refused before they are read
+    #[arg(long, value_name = "SIZE", value_parser = value::memory)]
+    max_memory: Option<u64>,
 }
 
 impl Compare {
@@ -47,11 +51,13 @@ impl Compare {
     pub fn run(self) -> Result<(), Failure> {
         let map = self.difference.as_deref().map(|file| Ok::<_, Failure>((file, Format::from_path(Path::new(file))?)));
         let map = map.transpose()?;
+        let names = [self.picture.as_str(), self.reference.as_str()];
+        let has_room = memory::has_room_for_flip(names, map.is_some(), self.max_memory)?;
         let (picture, reference) = (Side::read(&self.picture)?, Side::read(&self.reference)?);
         let difference = imaging::compare(&picture.image, &reference.image)?;
         // Files of levels hold what a screen shows; where one of them holds light, both are taken as that.
         let range = if picture.is_tone_mapped && reference.is_tone_mapped { Range::Ldr } else { Range::Hdr };
-        let flip = measured(&picture.image, &reference.image, range, &difference)?;
+        let flip = if has_room { measured(&picture.image, &reference.image, range, &difference)? } else { None };
         let noise = if difference.same_bits { None } else { Noise::of(&picture, &reference, self.significance) };
         let equal = match self.tolerance {
             Some(most) => difference.rmse <= most,

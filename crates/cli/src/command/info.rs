@@ -11,14 +11,12 @@ use crate::reproduce;
 use crate::source;
 use clap::Args;
 use juggler::film;
-use juggler::imaging::{self, Facts, Format};
+use juggler::imaging::{self, Facts, Format, regular};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Illuminance, Scene, import};
 use juggler::tracer::background::AnyBackground;
 use juggler::tracer::world::Geometry;
 use serde_json::{Map, Value, json};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// Flags of `juggler info`.
@@ -36,11 +34,12 @@ impl Info {
     /// Prints what a picture says, or builds the world or mesh and prints what is in it.
     pub fn run(self) -> Result<(), Failure> {
         let path = Path::new(&self.scene);
-        if import::is_mesh_name(path) && path.exists() {
+        if import::is_mesh_name(path) && (path.exists() || path.is_symlink()) {
             return console::print(&mesh::Report::of(&self.scene)?.text(self.json));
         }
-        let start = first_bytes(path).unwrap_or_default();
-        if let Some(format) = Format::from_first_bytes(&start) {
+        let start = regular::first_bytes(path, 12).unwrap_or_default();
+        let named = Format::from_path(path).ok().filter(|_| path.is_file());
+        if let Some(format) = Format::from_first_bytes(&start).or(named) {
             return self.picture(format);
         }
         if film::is_part(&start) {
@@ -74,16 +73,10 @@ impl Info {
     }
 }
 
-/// As many bytes of a file as tell what it is.
-fn first_bytes(path: &Path) -> Option<Vec<u8>> {
-    let file = File::open(path).ok().filter(|_| path.is_file())?;
-    let mut start = Vec::new();
-    file.take(12).read_to_end(&mut start).ok()?;
-    Some(start)
-}
-
+/// A row of what is told. Texts of files come without characters that a terminal would obey.
 fn row(key: &str, value: &str) -> String {
-    format!("{key:12} {value}")
+    let printable = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
+    format!("{key:12} {value}").chars().map(printable).collect()
 }
 
 fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {

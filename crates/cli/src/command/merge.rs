@@ -1,5 +1,7 @@
 //! `juggler merge`: parts of a picture become the picture, or a larger part.
 
+mod memory;
+
 use crate::console;
 use crate::failure::Failure;
 use crate::format::{bytes, clamping, counted, duration, samples};
@@ -11,6 +13,7 @@ use crate::plan::{Encoding, PART_ENDING, Target};
 use crate::progress::{Goal, Reporter, Watch, watched};
 use crate::reproduce::SAMPLES;
 use crate::stats::{self, Clamped};
+use crate::value;
 use clap::Args;
 use juggler::denoise::Guides;
 use juggler::film::counts::Spread;
@@ -53,6 +56,9 @@ pub struct Merge {
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
+    /// Refuse, before any tile is joined, what needs more memory than this
+    #[arg(long, value_name = "SIZE", value_parser = value::memory)]
+    max_memory: Option<u64>,
 }
 
 /// What was made.
@@ -104,6 +110,9 @@ impl Merge {
         let (merge, made) = if is_part {
             effect::check(Target::Part, &self.given())?;
             let merge = film::Merge::open(&self.parts, Wanted::Part)?;
+            if self.max_memory.is_some() {
+                memory::check(&merge, &LayerSet::of_part(&merge.description().layers)?, None, self.max_memory)?;
+            }
             let interrupts = Interrupts::watch()?;
             let made = Made::Part(merge.write(Path::new(&self.output), || interrupts.check())?);
             (merge, made)
@@ -149,6 +158,7 @@ impl Merge {
         }
         let header = Header { tone, options, metadata, viewpoint, ..Header::new(region.width, region.height) };
         let set = LayerSet::of_part(&merge.description().layers)?;
+        memory::check(merge, &set, Some((format, &header, self.output != STANDARD_OUTPUT)), self.max_memory)?;
         let mut layers = self.layers(&set, &header)?;
         let with_picture = layers.as_ref().is_some_and(|(_, with_picture)| *with_picture);
         let mut writer = match self.output.as_str() {

@@ -6,6 +6,7 @@ mod answers;
 mod errors;
 mod films;
 mod harness;
+mod inputs;
 mod layers;
 mod memory;
 mod merging;

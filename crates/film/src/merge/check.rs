@@ -9,6 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
 
+/// Most tiles of a picture whose missing shares are found out: dealing takes a hundred bytes a tile.
+const MOST_DEALT: u64 = 1 << 20;
+
 /// Samples without a gap that a part has of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Span {
@@ -135,22 +138,33 @@ fn doubled(parts: &[Part], spans: &[Span]) -> Vec<Complaint> {
 /// What of a picture is not there.
 struct Coverage<'a> {
     picture: &'a Description,
-    /// Samples that are missing, by tile; nothing of tiles of which all are there.
-    gaps: BTreeMap<u64, Vec<Range<u32>>>,
+    /// Tiles of which samples are missing, rising.
+    gaps: Vec<Gap>,
+}
+
+/// Neighboring tiles of which the same samples are missing.
+struct Gap {
+    tiles: Range<u64>,
+    samples: Vec<Range<u32>>,
 }
 
 impl<'a> Coverage<'a> {
     fn new(picture: &'a Description, parts: &[Part], spans: &[Span]) -> Self {
-        let mut gaps = BTreeMap::new();
-        let mut rest = spans;
-        for tile in 0..picture.layout().tiles() {
-            let (own, others) = rest.split_at(rest.partition_point(|span| span.tile <= tile));
-            rest = others;
-            let missing = missing(picture, parts, own);
-            if !missing.is_empty() {
-                gaps.insert(tile, missing);
+        let mut gaps: Vec<Gap> = Vec::new();
+        let mut add = |tiles: Range<u64>, spans: &[Span]| {
+            let samples = missing(picture, parts, spans);
+            if !tiles.is_empty() && !samples.is_empty() {
+                gaps.push(Gap { tiles, samples });
             }
+        };
+        let mut next = 0;
+        for own in spans.chunk_by(|a, b| a.tile == b.tile) {
+            let Some(tile) = own.first().map(|span| span.tile) else { continue };
+            add(next..tile, &[]);
+            add(tile..tile + 1, own);
+            next = tile + 1;
         }
+        add(next..picture.layout().tiles(), &[]);
         Self { picture, gaps }
     }
 
@@ -167,10 +181,13 @@ impl<'a> Coverage<'a> {
                 *counts.entry(share.count).or_default() += 1;
             }
         }
-        let Some((count, _)) = counts.into_iter().max_by_key(|(_, parts)| *parts) else { return self.samples() };
+        let can_be_dealt = self.picture.layout().tiles() <= MOST_DEALT;
+        let most = counts.into_iter().filter(|_| can_be_dealt).max_by_key(|(_, parts)| *parts);
+        let Some((count, _)) = most else { return self.samples() };
         let open = |tile: u64, samples: &Range<u32>| {
-            let gaps = self.gaps.get(&tile).map(Vec::as_slice).unwrap_or_default();
-            gaps.iter().any(|gap| gap.start < samples.end && gap.end > samples.start)
+            let gap = self.gaps.get(self.gaps.partition_point(|gap| gap.tiles.end <= tile));
+            let gaps = gap.filter(|gap| gap.tiles.contains(&tile)).map(|gap| gap.samples.as_slice());
+            gaps.unwrap_or_default().iter().any(|gap| gap.start < samples.end && gap.end > samples.start)
         };
         let dealt = Work::of(self.picture).deal(count).into_iter();
         let shards: BTreeSet<u32> =
@@ -181,9 +198,9 @@ impl<'a> Coverage<'a> {
     fn samples(&self) -> ToDo {
         let layout = self.picture.layout();
         let mut found: BTreeMap<(u32, u32), (u64, [u32; 2])> = BTreeMap::new();
-        for (tile, gap) in self.gaps.iter().flat_map(|(tile, gaps)| gaps.iter().map(move |gap| (*tile, gap))) {
-            let corner = layout.tile(tile).map_or([0; 2], |pixels| [pixels.x, pixels.y]);
-            found.entry((gap.start, gap.end)).or_insert((0, corner)).0 += 1;
+        for (tiles, gap) in self.gaps.iter().flat_map(|gap| gap.samples.iter().map(|samples| (&gap.tiles, samples))) {
+            let corner = layout.tile(tiles.start).map_or([0; 2], |pixels| [pixels.x, pixels.y]);
+            found.entry((gap.start, gap.end)).or_insert((0, corner)).0 += tiles.end - tiles.start;
         }
         let gap = |((start, end), (tiles, corner))| (start..end, tiles, corner);
         ToDo::Samples(found.into_iter().map(gap).collect())

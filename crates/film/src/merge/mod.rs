@@ -16,6 +16,7 @@ use crate::counts;
 use crate::part::{Chunk, Description, Part, PartError, PartWriter};
 use juggler_math::Rgb;
 use juggler_tracer::film::{Digest, Layout, Rect, Summary, TILE, Tile};
+use std::ops::Range;
 use std::path::Path;
 
 /// Most pixels of a band, if one row of tiles has not more.
@@ -49,6 +50,11 @@ impl Merge {
         &self.description
     }
 
+    /// How many tiles all parts hold together.
+    pub fn tiles(&self) -> u64 {
+        self.parts.iter().map(|part| part.tiles().len() as u64).sum()
+    }
+
     /// Hands the picture's rows to `rows`, from top to bottom, some whole rows at a time. Pixels of which nothing is
     /// there are black.
     pub fn rows<E: From<PartError>>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<Summary, E> {
@@ -62,15 +68,15 @@ impl Merge {
     ) -> Result<Summary, E> {
         let layout = self.description.layout();
         let mut digest = Digest::new(layout.region().width, layout.region().height);
-        self.bands(|_, tiles| {
+        for tiles in bands(&layout) {
+            let tiles = self.gather(&layout, &tiles)?;
             for tiles in tiles.chunks((layout.columns() as usize).max(1)) {
                 let (band, pixels) = row_of_tiles(&layout, tiles);
                 digest.clamp(tiles.iter().map(Tile::clamped).sum());
                 digest.update(&pixels);
                 rows(&band, tiles, &pixels)?;
             }
-            Ok::<(), E>(())
-        })?;
+        }
         Ok(digest.finish())
     }
 
@@ -88,31 +94,24 @@ impl Merge {
     /// `proceed`, which is asked again and again, ends it without a file.
     pub fn write<E: From<PartError>>(&self, path: &Path, proceed: impl Fn() -> Result<(), E>) -> Result<u64, E> {
         let mut writer = PartWriter::create(path, &self.description)?;
-        self.bands(|first, tiles| {
-            for (number, tile) in (first..).zip(tiles).filter(|(_, tile)| !tile.runs().is_empty()) {
+        let layout = self.description.layout();
+        for band in bands(&layout).filter(|band| self.holds_any(band)) {
+            let tiles = self.gather(&layout, &band)?;
+            for (number, tile) in band.zip(&tiles).filter(|(_, tile)| !tile.runs().is_empty()) {
                 proceed()?;
                 writer.add(number, &Chunk::encode(tile, self.description.clamped))?;
             }
-            Ok::<(), E>(())
-        })?;
+        }
         Ok(writer.finish()?)
     }
 
-    /// Gathers whole rows of tiles from all parts: the number of the first and the tiles.
-    fn bands<E: From<PartError>>(&self, mut each: impl FnMut(u64, &[Tile]) -> Result<(), E>) -> Result<(), E> {
-        let layout = self.description.layout();
-        let row = u64::from(layout.columns());
-        let rows = (BAND / (row * u64::from(TILE * TILE)).max(1)).max(1);
-        let mut first = 0;
-        while first < layout.tiles() {
-            let end = (first + row * rows).min(layout.tiles());
-            each(first, &self.gather(&layout, first, end)?)?;
-            first = end;
-        }
-        Ok(())
+    fn holds_any(&self, band: &Range<u64>) -> bool {
+        self.parts.iter().any(|part| part.tiles_in(band.start, band.end).len() > 0)
     }
 
-    fn gather(&self, layout: &Layout, first: u64, end: u64) -> Result<Vec<Tile>, PartError> {
+    /// The tiles of whole rows from all parts.
+    fn gather(&self, layout: &Layout, band: &Range<u64>) -> Result<Vec<Tile>, PartError> {
+        let Range { start: first, end } = *band;
         let mut tiles: Vec<Tile> = (first..end).filter_map(|number| Some(Tile::new(layout.tile(number)?))).collect();
         for part in self.parts.iter().filter(|part| part.tiles_in(first, end).len() > 0) {
             let mut reader = part.reader()?;
@@ -126,6 +125,14 @@ impl Merge {
         }
         Ok(tiles)
     }
+}
+
+/// The numbers of the tiles of some whole rows at a time, from top to bottom.
+fn bands(layout: &Layout) -> impl Iterator<Item = Range<u64>> + use<> {
+    let (row, tiles) = (u64::from(layout.columns()), layout.tiles());
+    let rows = (BAND / (row * u64::from(TILE * TILE)).max(1)).max(1);
+    let length = (row * rows).max(1);
+    (0..tiles.div_ceil(length)).map(move |number| number * length..((number + 1) * length).min(tiles))
 }
 
 /// The pixels of tiles side by side, row by row, and where they are.

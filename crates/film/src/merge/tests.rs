@@ -51,6 +51,32 @@ impl Folder {
     }
 }
 
+/// The largest picture, of which nothing is there: that is told at once and in little memory, whatever its parts are.
+#[test]
+fn a_large_picture_without_tiles_is_told_at_once() {
+    let folder = Folder::new();
+    let region = Rect { x: 0, y: 0, width: 65_536, height: 32_768 };
+    let shares = [Share::whole(SAMPLES), Share { index: 7, count: u32::MAX, ..Share::whole(SAMPLES) }];
+    for share in shares {
+        let file = folder.part("large.jfilm", &Description { share, ..description(region, SAMPLES) }, &[]);
+        let start = std::time::Instant::now();
+        let complaints = folder.complaints(&[file]);
+        assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+        let expected = "still to do: samples 0..100 of 8388608 tiles (the first at 0,0)";
+        assert!(complaints.contains(expected), "{complaints}");
+    }
+}
+
+#[test]
+fn what_differs_is_told_in_a_few_printable_words() {
+    let folder = Folder::new();
+    let mut other = description(REGION, SAMPLES);
+    other.fingerprint.insert("seed".into(), format!("\u{1b}[31m{}", "x".repeat(1_000_000)));
+    let files = [folder.share(0, 1), folder.part("b.jfilm", &other, &[])];
+    let complaints = folder.complaints(&files);
+    assert!(complaints.len() < 1000 && complaints.contains("xxx...") && !complaints.contains('\u{1b}'), "{complaints}");
+}
+
 /// The picture of all tiles, pixel by pixel.
 fn whole() -> (Vec<Rgb>, Summary) {
     let Rect { x, y, width, height } = REGION;

@@ -8,8 +8,15 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Largest width and height of a picture.
+/// Largest width and height of a picture, and most pixels: those of scenes.
 const MAX_EDGE: u32 = 65_536;
+const MAX_PIXELS: u64 = 1 << 31;
+/// Most entries of a scene's objects that a part may name: more than a scene can store.
+const MAX_ENTRIES: u32 = 1 << 22;
+/// Most groups of lights that a scene can name.
+const MAX_LIGHT_GROUPS: usize = 65_535;
+/// Most colors that a picture keeps of each sample beside radiance.
+pub const MAX_PLANES: u32 = 4096;
 
 /// When a picture is finished.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -137,6 +144,17 @@ impl Layered {
     pub fn is_empty(&self) -> bool {
         self.wanted.is_empty() && self.planes == 0 && !self.masks
     }
+
+    /// What of it no picture can have.
+    fn fault(&self) -> Option<&'static str> {
+        if self.entries > MAX_ENTRIES {
+            return Some("it names more objects (`entries`) than a scene can have");
+        }
+        if self.light_groups.len() > MAX_LIGHT_GROUPS {
+            return Some("it names more groups of lights (`light_groups`) than a scene can have");
+        }
+        (self.planes > MAX_PLANES).then_some("it has more layers (`planes`) than a picture can keep")
+    }
 }
 
 impl std::fmt::Display for Layered {
@@ -234,8 +252,11 @@ impl Description {
     pub(super) fn fault(&self) -> Option<&'static str> {
         let Self { size: [width, height], region, share, stop, .. } = self;
         let inside = |start: u32, length: u32, end: u32| start.checked_add(length).is_some_and(|at| at <= end);
-        if *width > MAX_EDGE || *height > MAX_EDGE {
+        if *width > MAX_EDGE || *height > MAX_EDGE || u64::from(*width) * u64::from(*height) > MAX_PIXELS {
             return Some("its picture is larger than any that can be rendered");
+        }
+        if let Some(fault) = self.layers.fault() {
+            return Some(fault);
         }
         if !inside(region.x, region.width, *width) || !inside(region.y, region.height, *height) {
             return Some("its region is not inside its picture");
@@ -275,15 +296,10 @@ impl std::fmt::Display for Stop {
 
 impl std::fmt::Display for Mismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let shown = |text: &str| match text {
-            "" => "nothing".to_owned(),
-            text if is_hash(text) => "something else".to_owned(),
-            text => text.to_owned(),
-        };
         if is_hash(&self.here) && is_hash(&self.there) {
-            return write!(f, "{}: not the same", self.name);
+            return write!(f, "{}: not the same", shown(&self.name));
         }
-        write!(f, "{}: {} instead of {}", self.name, shown(&self.there), shown(&self.here))
+        write!(f, "{}: {} instead of {}", shown(&self.name), shown(&self.there), shown(&self.here))
     }
 }
 
@@ -291,6 +307,20 @@ impl std::fmt::Display for Mismatch {
 fn is_hash(text: &str) -> bool {
     let hash = |word: &str| word.len() >= 32 && word.bytes().all(|byte| byte.is_ascii_hexdigit());
     !text.is_empty() && text.split(' ').all(hash)
+}
+
+/// A text of a file as it may stand in a message: not longer than a few lines, without characters that a terminal obeys.
+fn shown(text: &str) -> String {
+    const LONGEST: usize = 200;
+    if text.is_empty() {
+        return "nothing".to_owned();
+    }
+    if is_hash(text) {
+        return "something else".to_owned();
+    }
+    let printable = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
+    text.chars().take(LONGEST).map(printable).chain(dots.chars()).collect()
 }
 
 fn size([width, height]: [u32; 2]) -> String {

@@ -36,8 +36,11 @@ fn put(bytes: &mut Vec<u8>, packed: &[u8]) {
 /// The way back from [`pack`] for a picture of such layers: what there is, and the bytes that follow. `None` when the bytes
 /// hold something else.
 pub(super) fn unpack<'b>(mut bytes: &'b [u8], pixels: usize, kept: &Layered) -> Option<(Extras, &'b [u8])> {
-    // What is claimed beyond the bytes that are there is not made room for.
-    let count = (kept.planes as usize).min(bytes.len());
+    let count = kept.planes as usize;
+    // LZ4 makes no more than 255 bytes of one: what is claimed beyond that is not made room for.
+    if count.saturating_mul(pixels).saturating_mul(12) > bytes.len().saturating_mul(256) {
+        return None;
+    }
     let mut planes = vec![Rgb::BLACK; count * pixels];
     for layer in 0..count {
         let colors = unpack_colors(take(&mut bytes)?, pixels)?;

@@ -12,7 +12,7 @@ mod tests;
 mod write;
 
 pub use chunk::Chunk;
-pub use description::{Description, Layered, Mismatch, Share, Stop};
+pub use description::{Description, Layered, MAX_PLANES, Mismatch, Share, Stop};
 pub use error::PartError;
 pub use read::{Part, Reader, is_part};
 pub use write::{PartWriter, write};

@@ -3,9 +3,10 @@
 use super::chunk::decode;
 use super::format::{ENTRY, Entry, Head, MAGIC, MAX_HEAD, PRELUDE, Prelude, SEAL, VERSION, in_words, layers};
 use super::{Description, PartError};
+use juggler_imaging::regular;
 use juggler_tracer::film::{Layout, Tile};
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Bytes of the index that are read at once.
@@ -76,7 +77,7 @@ impl Part {
     /// Opens the file to read tiles.
     pub fn reader(&self) -> Result<Reader<'_>, PartError> {
         let name = self.path.display().to_string();
-        match File::open(&self.path) {
+        match regular::open(&self.path) {
             Ok(file) => Ok(Reader { part: self, file, name, bytes: Vec::new() }),
             Err(source) => Err(PartError::Read { file: name, source }),
         }
@@ -141,9 +142,9 @@ struct Source {
 impl Source {
     fn open(path: &Path) -> Result<Self, PartError> {
         let name = path.display().to_string();
-        let opened = File::open(path).and_then(|file| {
-            let facts = file.metadata()?;
-            if facts.is_dir() { Err(io::Error::from(io::ErrorKind::IsADirectory)) } else { Ok((file, facts.len())) }
+        let opened = regular::open(path).and_then(|file| {
+            let length = file.metadata()?.len();
+            Ok((file, length))
         });
         match opened {
             Ok((file, length)) => Ok(Self { name, file: BufReader::new(file), length }),

@@ -94,6 +94,34 @@ fn unsafe_stands_only_where_it_was_agreed_on() {
     assert!(workspace.contains("[workspace.lints.rust]\nunsafe_code = \"forbid\"\n"));
 }
 
+/// Files that open others by themselves: the one that every reader opens its input with, what reads from the system, and what
+/// tests and measures.
+const OPENERS: &[&str] = &[
+    "bvh/benches/traverse.rs",
+    "cli/src/stats.rs",
+    "denoise/examples/evaluate.rs",
+    "fuzz/src/bombs/run.rs",
+    "fuzz/src/seeds.rs",
+    "imaging/src/regular.rs",
+];
+
+/// Whoever opens a named pipe waits for another program, forever: readers open their input by `imaging::regular::open`.
+#[test]
+fn input_is_opened_in_one_place() {
+    let crates = root().join("crates");
+    let opens = |path: &Path| {
+        let text = std::fs::read_to_string(path).unwrap();
+        let code = text.split("\n#[cfg(test)]").next().unwrap_or_default();
+        ["File::open(", "fs::read(", "fs::read_to_string("].iter().any(|call| code.contains(call))
+    };
+    let name = |path: &PathBuf| path.strip_prefix(&crates).unwrap().display().to_string();
+    let is_test = |name: &str| name.contains("/tests/") || name.ends_with("tests.rs");
+    let files = rust_files(&crates).into_iter().filter(|path| opens(path));
+    let mut found: Vec<String> = files.map(|path| name(&path)).filter(|name| !is_test(name)).collect();
+    found.sort();
+    assert_eq!(found, OPENERS, "files that open files");
+}
+
 #[test]
 fn every_dependency_has_a_licence_that_fits() {
     let output = Command::new(env!("CARGO"))

@@ -2,7 +2,7 @@
 //! are scene-referred and no tone curve applies; primaries other than those of sRGB are named. It is written as a file of layers
 //! that has one. (OpenEXR file layout, openexr.com.)
 
-use super::{Header, Inspected, ReadSeek, RowWriter, Source, Texts};
+use super::{ENDS, Header, Inspected, ReadSeek, RowWriter, Source, Texts};
 use crate::ImageError;
 use crate::layered::{self, LayerHeader, LayerRows, LayeredHeader};
 use crate::output::Destination;
@@ -11,7 +11,7 @@ use crate::tone::{Chromaticities, Matrix};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::meta::header::Header as ExrHeader;
-use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
+use exr::prelude::{Compression, ReadChannels, ReadLayers, ReadSpecificChannel};
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Read};
 
@@ -38,33 +38,65 @@ impl RowWriter for Writer {
     }
 }
 
-fn unreadable(source: Source, error: ExrError) -> ImageError {
+/// What a decoder's error says, in words that name the file.
+pub(crate) fn unreadable(source: Source, error: ExrError) -> ImageError {
     match error {
         ExrError::Io(error) => source.failed(error),
-        other => source.malformed(other.to_string()),
+        ExrError::Invalid(what) if ["reference to missing bytes", "not enough data"].contains(&&*what) => {
+            source.malformed(ENDS)
+        }
+        ExrError::Invalid(what) => source.malformed(format!("its data is invalid: {what}")),
+        ExrError::NotSupported(what) => source.malformed(format!("it uses what is not read: {what}")),
+        ExrError::Aborted => source.malformed("reading was broken off"),
     }
+}
+
+/// The heads of all layers, whose sizes the file can hold.
+pub(crate) fn heads(source: Source, bytes: &mut dyn ReadSeek) -> Result<Vec<ExrHeader>, ImageError> {
+    let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(|e| unreadable(source, e))?;
+    for header in &meta.headers {
+        let Vec2(width, height) = header.layer_size;
+        source.size(width as u64, height as u64, densest(header))?;
+    }
+    bytes.rewind().map_err(|e| source.failed(e))?;
+    Ok(meta.headers.into_iter().collect())
+}
+
+/// Most pixels that a byte can hold. Deflate makes at most 1032 bytes of one, of which PXR24 makes a third more; DWA keeps little
+/// more than two numbers of 64 pixels, and these deflated.
+fn densest(header: &ExrHeader) -> u64 {
+    let most_bytes: u64 = match header.compression {
+        Compression::DWAA(_) | Compression::DWAB(_) => 64 * 1032,
+        Compression::Uncompressed => 1,
+        _ => 1376,
+    };
+    let eighths = header.channels.list.iter().map(|channel| {
+        let Vec2(x, y) = channel.sampling;
+        8 * channel.sample_type.bytes_per_sample() / (x * y).clamp(1, 64)
+    });
+    (8 * most_bytes / (eighths.sum::<usize>() as u64).max(1)).max(1)
 }
 
 /// What [`raster`] will bring: of the first layer with R, G and B, or with Y alone, and with A if it has one.
 pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
-    let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(|e| unreadable(source, e))?;
+    let heads = heads(source, bytes)?;
     let has = |header: &ExrHeader, names: &[&str]| {
         names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name))
     };
-    let found = |names: &[&str]| meta.headers.iter().find(|header| !header.deep && has(header, names));
+    let found = |names: &[&str]| heads.iter().find(|header| !header.deep && has(header, names));
     let (colors, header) = match (found(&["R", "G", "B"]), found(&["Y"])) {
         (Some(header), _) => (3, header),
         (None, Some(header)) => (1, header),
         (None, None) => return Err(source.malformed("it has no layer with channels R, G and B, or Y")),
     };
-    let size = source.size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
+    let Vec2(width, height) = header.layer_size;
+    let size = source.size(width as u64, height as u64, densest(header))?;
     Ok(source.layout(size, colors + u8::from(has(header, &["A"])), 4))
 }
 
 /// The layer that [`layout`] finds, in its data window.
 pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
     let layout = layout(source, bytes)?;
-    bytes.rewind().map_err(|e| source.failed(e))?;
     let channels = usize::from(layout.channels);
     let room = move |size: Vec2<usize>| (size.0, vec![0_f32; size.0 * size.1 * channels]);
     let put = move |(width, samples): &mut (usize, Vec<f32>), position: Vec2<usize>, pixel: &[f32]| {
@@ -95,24 +127,19 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
 
 /// The first layer with R, G and B of an EXR, in its data window, in the primaries of sRGB whatever those of the file.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    let unreadable = |error| unreadable(source, error);
-    let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false).map_err(unreadable)?;
-    for header in &meta.headers {
-        source.size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
-    }
-    bytes.rewind().map_err(|e| source.failed(e))?;
+    heads(source, bytes)?;
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
     let reader = reader.rgb_channels(
         |size, _| (size.0, vec![[0f32; 3]; size.0 * size.1]),
         |(width, pixels), position, (r, g, b): (f32, f32, f32)| pixels[position.1 * *width + position.0] = [r, g, b],
     );
     let reader = reader.first_valid_layer().all_attributes().non_parallel();
-    let image = reader.from_buffered(&mut *bytes).map_err(unreadable)?;
+    let image = reader.from_buffered(&mut *bytes).map_err(|error| unreadable(source, error))?;
     let size = image.layer_data.size;
     let matrix = image.attributes.chromaticities.and_then(to_srgb);
     let light = |pixel: [f32; 3]| matrix.map_or(Rgb::from(pixel), |matrix| matrix.color(Rgb::from(pixel)));
     let pixels = image.layer_data.channel_data.pixels.1.into_iter().map(light).collect();
-    let (width, height) = source.size(size.0 as u64, size.1 as u64)?;
+    let (width, height) = source.size(size.0 as u64, size.1 as u64, u64::MAX)?;
     source.image(width, height, pixels)
 }
 
@@ -125,13 +152,14 @@ fn to_srgb(named: exr::meta::attribute::Chromaticities) -> Option<Matrix> {
 
 /// Size, and attributes that are texts, in the file's order.
 pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspected, ImageError> {
+    heads(source, bytes)?;
     let (window, texts) = attributes(bytes).map_err(|e| source.failed(e))?;
     let [left, top, right, bottom] = window;
     let [width, height] = [(left, right), (top, bottom)].map(|(first, last)| u64::try_from(last - first + 1));
     let (Ok(width), Ok(height)) = (width, height) else {
         return Err(source.malformed("its data window is inside out"));
     };
-    Ok((source.size(width, height)?, texts))
+    Ok((source.size(width, height, u64::MAX)?, texts))
 }
 
 /// The data window's left, top, right and bottom, and all texts.

@@ -2,7 +2,7 @@
 //! exponent, rows packed by runs. Mantissas are rounded, not cut off, and read back without half a step added,
 //! as most programs do: the relative error is at most 1/256 of the largest channel.
 
-use super::{Header, Inspected, ReadSeek, RowWriter, Source};
+use super::{ENDS, Header, Inspected, ReadSeek, RowWriter, Source, shown};
 use crate::ImageError;
 use crate::output::Destination;
 use juggler_math::{Image, Rgb};
@@ -10,6 +10,8 @@ use std::io::{self, BufRead, Read, Write};
 
 /// Widths that the packed form can hold.
 const PACKED: std::ops::Range<usize> = 8..32_768;
+/// Most pixels that a byte can hold: a run of 127 takes 2 bytes in each of 4 channels.
+const DENSEST: u64 = 16;
 
 /// Streams rows into a Radiance picture.
 pub(super) struct Writer {
@@ -119,7 +121,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     let lines = head(source, bytes)?;
     let (width, height) = size(source, &lines)?;
     if let Some(format) = lines.iter().find_map(|l| l.strip_prefix("FORMAT=")).filter(|f| *f != "32-bit_rle_rgbe") {
-        return Err(source.malformed(format!("pixels are `{format}`, only 32-bit_rle_rgbe is read")));
+        return Err(source.malformed(format!("its pixels are {}, only 32-bit_rle_rgbe is read", shown(format))));
     }
     let exposures = lines.iter().filter_map(|l| l.strip_prefix("EXPOSURE=")).filter_map(|v| v.trim().parse().ok());
     let exposure: f32 = exposures.filter(|&v: &f32| v > 0.0 && v.is_finite()).product();
@@ -138,12 +140,12 @@ fn size(source: Source, lines: &[String]) -> Result<(u32, u32), ImageError> {
     let words: Vec<&str> = last.split_ascii_whitespace().collect();
     let (width, height) = match words.as_slice() {
         ["-Y", height, "+X", width] => (width.parse(), height.parse()),
-        _ => return Err(source.malformed(format!("its size says `{last}`, only `-Y height +X width` is read"))),
+        _ => return Err(source.malformed(format!("its size says {}, only `-Y height +X width` is read", shown(last)))),
     };
     let (Ok(width), Ok(height)) = (width, height) else {
-        return Err(source.malformed(format!("its size says `{last}`")));
+        return Err(source.malformed(format!("its size says {}", shown(last))));
     };
-    source.size(width, height)
+    source.size(width, height, DENSEST)
 }
 
 /// The lines up to and with the size; the empty one is left out.
@@ -179,7 +181,7 @@ fn read_row(source: Source, bytes: &mut dyn ReadSeek, width: usize, row: &mut Ve
         row.extend(start);
         let wanted = (width - 1) * 4;
         let got = (&mut *bytes).take(wanted as u64).read_to_end(row).map_err(|e| source.failed(e))?;
-        return if got == wanted { Ok(()) } else { Err(source.malformed("it ends too early")) };
+        return if got == wanted { Ok(()) } else { Err(source.malformed(ENDS)) };
     }
     if usize::from(start[2]) << 8 | usize::from(start[3]) != width {
         return Err(source.malformed("a row has another width"));

@@ -1,7 +1,7 @@
 //! JPEG (ITU-T T.81), 8 bits, without chroma subsampling above quality 90. The encoder pulls rows, so the picture
 //! in 8 bits is held until the end.
 
-use super::{Header, ReadSeek, RowWriter, Source};
+use super::{ENDS, Header, ReadSeek, RowWriter, Source};
 use crate::output::Destination;
 use crate::raster::{Encoding, Raster, Samples};
 use crate::tone::Levels;
@@ -13,9 +13,12 @@ use zune_core::bytestream::ZByteReaderTrait;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
 
 /// Where the size is looked for: profiles and previews may stand before it.
 const HEAD_BYTES: u64 = 16 << 20;
+/// Most pixels that a byte can hold: a block of 64 takes at least one bit.
+const DENSEST: u64 = 512;
 
 /// Gathers rows and encodes them at the end.
 pub(super) struct Writer {
@@ -77,11 +80,11 @@ fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<((u32, u32), Vec<
     let most_bytes = source.limits.most_pixels.saturating_mul(4).saturating_add(1 << 24);
     bytes.take(most_bytes).read_to_end(&mut file).map_err(|e| source.failed(e))?;
     if !is_complete(&file) {
-        return Err(source.malformed("it ends too early"));
+        return Err(source.malformed(ENDS));
     }
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(&file), options());
     let size = decoded_size(source, &mut decoder)?;
-    let bytes = decoder.decode().map_err(|e| source.malformed(e.to_string()))?;
+    let bytes = decoder.decode().map_err(|e| source.malformed(in_words(&e)))?;
     Ok((size, bytes))
 }
 
@@ -95,9 +98,9 @@ fn options() -> DecoderOptions {
 }
 
 fn decoded_size<T: ZByteReaderTrait>(source: Source, decoder: &mut JpegDecoder<T>) -> Result<(u32, u32), ImageError> {
-    decoder.decode_headers().map_err(|e| source.malformed(e.to_string()))?;
+    decoder.decode_headers().map_err(|e| source.malformed(in_words(&e)))?;
     let info = decoder.info().ok_or_else(|| source.malformed("it has no size"))?;
-    source.size(u64::from(info.width), u64::from(info.height))
+    source.size(u64::from(info.width), u64::from(info.height), DENSEST)
 }
 
 /// Width and height, which stand in the first bytes.
@@ -105,6 +108,21 @@ pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32
     let mut start = Vec::new();
     bytes.take(HEAD_BYTES).read_to_end(&mut start).map_err(|e| source.failed(e))?;
     decoded_size(source, &mut JpegDecoder::new_with_options(Cursor::new(&start), options()))
+}
+
+/// What is wrong, without the decoder's own words.
+fn in_words(error: &DecodeErrors) -> &'static str {
+    match error {
+        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => ENDS,
+        DecodeErrors::HuffmanDecode(_) => "a Huffman table or code is damaged",
+        DecodeErrors::DqtError(_) => "its quantization tables are damaged",
+        DecodeErrors::SosError(_) => "the head of a scan is damaged",
+        DecodeErrors::SofError(_) => "the head of its frame is damaged",
+        DecodeErrors::MCUError(_) => "its pixels are damaged",
+        DecodeErrors::ZeroError => "its width or height is 0",
+        DecodeErrors::Unsupported(_) => "only baseline and progressive JPEGs are read",
+        _ => "its structure is damaged",
+    }
 }
 
 /// Whether an end follows the last scan: the decoder itself fills up what is missing with grey. Neither marker

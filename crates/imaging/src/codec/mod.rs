@@ -1,6 +1,6 @@
 //! Formats of picture files, each with its writer (a stream of rows) and its reader (a whole image).
 
-mod exr;
+pub(crate) mod exr;
 mod hdr;
 mod jpeg;
 mod pfm;
@@ -162,6 +162,14 @@ impl RowWriter for Counted {
     }
 }
 
+/// A piece of a file's text as it may stand in a message: short, without characters that a terminal would obey.
+fn shown(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let printable = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
+    format!("`{}{dots}`", text.chars().take(LONGEST).map(printable).collect::<String>())
+}
+
 /// What a reader reads from.
 pub(crate) trait ReadSeek: BufRead + Seek {}
 impl<T: BufRead + Seek> ReadSeek for T {}
@@ -172,17 +180,26 @@ pub(crate) struct Source<'a> {
     pub place: &'a str,
     pub format: Format,
     pub limits: &'a Limits,
+    /// Bytes of the file.
+    pub length: u64,
 }
+
+/// What is said of data that should go on and does not.
+pub(crate) const ENDS: &str = "its data ends too early";
 
 impl Source<'_> {
     pub(crate) fn malformed(self, message: impl Into<String>) -> ImageError {
-        ImageError::Malformed { place: self.place.into(), format: self.format, message: message.into() }
+        ImageError::Malformed { place: self.place.into(), format: self.format, message: message.into(), at: None }
+    }
+
+    pub(crate) fn truncated(self) -> ImageError {
+        ImageError::Truncated { place: self.place.into(), at: self.length }
     }
 
     /// A system's failure; the end of the file is one of the file itself.
-    fn failed(self, source: io::Error) -> ImageError {
+    pub(crate) fn failed(self, source: io::Error) -> ImageError {
         match source.kind() {
-            io::ErrorKind::UnexpectedEof => self.malformed("it ends too early"),
+            io::ErrorKind::UnexpectedEof => self.malformed(ENDS),
             io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::Other => {
                 self.malformed(source.to_string())
             }
@@ -190,14 +207,40 @@ impl Source<'_> {
         }
     }
 
-    /// Width and height, when there are pixels and not too many.
-    fn size(self, width: u64, height: u64) -> Result<(u32, u32), ImageError> {
-        let most_pixels = self.limits.most_pixels;
-        match (u32::try_from(width), u32::try_from(height)) {
-            (Ok(0), _) | (_, Ok(0)) => Err(self.malformed(format!("its size is {width} × {height}"))),
-            (Ok(w), Ok(h)) if width * height <= most_pixels => Ok((w, h)),
-            _ => Err(ImageError::TooLarge { place: self.place.into(), width, height, most_pixels }),
+    /// Checks width and height before any pixel is decoded: there are pixels, not too many, and no more than the bytes
+    /// of the file can hold if each holds `densest`.
+    pub(crate) fn size(self, width: u64, height: u64, densest: u64) -> Result<(u32, u32), ImageError> {
+        let place = || self.place.to_owned();
+        let (Limits { most_pixels, longest_side }, bytes) = (*self.limits, self.length);
+        let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
+            return Err(ImageError::TooLong { place: place(), width, height, longest_side });
+        };
+        if columns == 0 || rows == 0 {
+            return Err(self.malformed(format!("its size is {width} × {height}")));
         }
+        // Two factors of 32 bits do not overflow 64.
+        let pixels = width * height;
+        if pixels > bytes.saturating_mul(densest) {
+            return Err(ImageError::Claim { place: place(), format: self.format, width, height, bytes });
+        }
+        if columns.max(rows) > longest_side {
+            return Err(ImageError::TooLong { place: place(), width, height, longest_side });
+        }
+        if pixels > most_pixels {
+            return Err(ImageError::TooLarge { place: place(), width, height, most_pixels });
+        }
+        Ok((columns, rows))
+    }
+
+    /// Adds to an error where in the file reading stopped.
+    fn located<T>(self, bytes: &mut dyn ReadSeek, result: Result<T, ImageError>) -> Result<T, ImageError> {
+        let Err(ImageError::Malformed { place, format, message, at: None }) = result else { return result };
+        // A JPEG is read as a whole before it is decoded.
+        let at = bytes.stream_position().ok().filter(|_| self.format != Format::Jpeg);
+        Err(match at {
+            at if message == ENDS && at.is_none_or(|at| at >= self.length) => self.truncated(),
+            at => ImageError::Malformed { place, format, message, at },
+        })
     }
 
     fn layout(self, (width, height): (u32, u32), channels: u8, sample_bytes: u8) -> Layout {
@@ -205,25 +248,26 @@ impl Source<'_> {
     }
 
     fn image(self, width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Image, ImageError> {
-        Image::from_pixels(width, height, pixels).ok_or_else(|| self.malformed("it ends too early"))
+        Image::from_pixels(width, height, pixels).ok_or_else(|| self.malformed(ENDS))
     }
 }
 
 /// Reads a picture from its first byte on.
 pub(crate) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
-    match source.format {
+    let image = match source.format {
         Format::Png => png::read(source, bytes),
         Format::Jpeg => jpeg::read(source, bytes),
         Format::Exr => exr::read(source, bytes),
         Format::Hdr => hdr::read(source, bytes),
         Format::Webp => webp::read(source, bytes),
         Format::Pfm => pfm::read(source, bytes),
-    }
+    };
+    source.located(bytes, image)
 }
 
 /// Reads a picture's samples as they are.
 pub(crate) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster, ImageError> {
-    match source.format {
+    let raster = match source.format {
         Format::Png => png::raster(source, bytes),
         Format::Jpeg => jpeg::raster(source, bytes),
         Format::Exr => exr::raster(source, bytes),
@@ -234,19 +278,21 @@ pub(crate) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
             let layout = source.layout((image.width(), image.height()), 3, 4);
             Ok(Raster { layout, samples: Samples::Floats(samples), encoding: Encoding::Linear })
         }
-    }
+    };
+    source.located(bytes, raster)
 }
 
 /// Reads what [`raster`] will bring.
 pub(crate) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
-    match source.format {
+    let layout = match source.format {
         Format::Png => png::layout(source, bytes),
         Format::Webp => webp::layout(source, bytes),
         Format::Exr => exr::layout(source, bytes),
-        Format::Jpeg => Ok(source.layout(jpeg::size(source, bytes)?, 3, 1)),
-        Format::Hdr => Ok(source.layout(hdr::inspect(source, bytes)?.0, 3, 4)),
-        Format::Pfm => Ok(source.layout(pfm::size(source, bytes)?, 3, 4)),
-    }
+        Format::Jpeg => jpeg::size(source, bytes).map(|size| source.layout(size, 3, 1)),
+        Format::Hdr => hdr::inspect(source, bytes).map(|(size, _)| source.layout(size, 3, 4)),
+        Format::Pfm => pfm::size(source, bytes).map(|size| source.layout(size, 3, 4)),
+    };
+    source.located(bytes, layout)
 }
 
 /// What a picture file says before its pixels.
@@ -264,14 +310,16 @@ pub struct Facts {
 
 /// Reads a picture's size and texts, and no pixels.
 pub(crate) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Facts, ImageError> {
-    let ((width, height), metadata) = match source.format {
-        Format::Png => png::inspect(source, bytes)?,
-        Format::Exr => exr::inspect(source, bytes)?,
-        Format::Hdr => hdr::inspect(source, bytes)?,
-        Format::Jpeg => (jpeg::size(source, bytes)?, Vec::new()),
-        Format::Webp => (webp::size(source, bytes)?, Vec::new()),
-        Format::Pfm => (pfm::size(source, bytes)?, Vec::new()),
+    let plain = |size| (size, Vec::new());
+    let inspected = match source.format {
+        Format::Png => png::inspect(source, bytes),
+        Format::Exr => exr::inspect(source, bytes),
+        Format::Hdr => hdr::inspect(source, bytes),
+        Format::Jpeg => jpeg::size(source, bytes).map(plain),
+        Format::Webp => webp::size(source, bytes).map(plain),
+        Format::Pfm => pfm::size(source, bytes).map(plain),
     };
+    let ((width, height), metadata) = source.located(bytes, inspected)?;
     Ok(Facts { format: source.format, width, height, metadata })
 }
 

@@ -1,7 +1,7 @@
 //! Portable Float Map: a text header, then floats, rows from the bottom up. (Debevec; a negative scale says
 //! little-endian.)
 
-use super::{Header, ReadSeek, RowWriter, Source};
+use super::{Header, ReadSeek, RowWriter, Source, shown};
 use crate::ImageError;
 use crate::output::{Destination, WriteSeek};
 use juggler_math::{Image, Rgb};
@@ -57,7 +57,7 @@ impl RowWriter for Writer {
 /// A colour or grey PFM; the scale's size is left out, as most readers do.
 pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, ImageError> {
     let head = head(source, bytes)?;
-    let (width, height) = source.size(head.width, head.height)?;
+    let (width, height) = head.size(source)?;
     let channels = if head.grey { 1 } else { 3 };
     let mut row = vec![0; width as usize * channels * 4];
     let mut rows: Vec<Vec<Rgb>> = Vec::new();
@@ -78,8 +78,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
 
 /// Width and height.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
-    let head = head(source, bytes)?;
-    source.size(head.width, head.height)
+    head(source, bytes)?.size(source)
 }
 
 struct Head {
@@ -87,6 +86,12 @@ struct Head {
     width: u64,
     height: u64,
     little: bool,
+}
+
+impl Head {
+    fn size(&self, source: Source) -> Result<(u32, u32), ImageError> {
+        source.size(self.width, self.height, 1)
+    }
 }
 
 /// The text: magic, width, height, scale, parted by white space; one such byte ends it.
@@ -100,7 +105,7 @@ fn head(source: Source, bytes: &mut dyn ReadSeek) -> Result<Head, ImageError> {
         (Ok(width), Ok(height), Ok(scale)) if scale.is_finite() && scale != 0.0 => {
             Ok(Head { grey: words[0] == "Pf", width, height, little: scale < 0.0 })
         }
-        _ => Err(source.malformed(format!("its head says `{}`", words.join(" ")))),
+        _ => Err(source.malformed(format!("its head says {}", shown(&words.join(" "))))),
     }
 }
 

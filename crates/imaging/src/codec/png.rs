@@ -1,7 +1,7 @@
 //! PNG: 8 or 16 bits a channel, streamed; tagged as sRGB, because that is the display that every tone curve aims
 //! at, or, of other primaries, by cICP with the curve of sRGB, and by cHRM and gAMA for programs that do not know it; texts in tEXt or (beyond ASCII) iTXt chunks (W3C, Portable Network Graphics, third edition).
 
-use super::{Header, Inspected, ReadSeek, RowWriter, Source};
+use super::{ENDS, Header, Inspected, ReadSeek, RowWriter, Source};
 use crate::ImageError;
 use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
@@ -133,8 +133,35 @@ fn failed(place: &str, error: EncodingError) -> ImageError {
 fn unreadable(source: Source, error: DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(error) => source.failed(error),
-        other => source.malformed(other.to_string()),
+        DecodingError::Format(error) => source.malformed(in_words(&error.to_string())),
+        DecodingError::Parameter(_) => source.malformed(DAMAGED),
+        DecodingError::LimitsExceeded => source.malformed("its texts or profiles are too large"),
     }
+}
+
+const DAMAGED: &str = "its structure is damaged";
+
+/// What is wrong, by how the decoder's text begins.
+fn in_words(text: &str) -> &'static str {
+    let known = [
+        ("CRC error", "the checksum of a chunk is wrong"),
+        ("Corrupt deflate stream", "its compressed pixels are damaged"),
+        ("IDAT or fDAT", ENDS),
+        ("IDAT or fdAT", "it holds no pixels"),
+        ("Chunk", "a chunk stands where it must not"),
+        ("Missing palette", "its palette is missing"),
+        ("Not enough palette", "its palette is too short"),
+        ("Invalid image dimensions", "its width or height is 0 or too large"),
+        ("Invalid color", "its head names a kind of color that PNG does not have"),
+        ("Invalid bit depth", "its head names a number of bits that PNG does not have"),
+        ("Transparency", "it has transparency for a kind of color that has none"),
+    ];
+    known.into_iter().find(|(start, _)| text.starts_with(start)).map_or(DAMAGED, |(_, words)| words)
+}
+
+/// Most pixels that a byte can hold: deflate makes at most 1032 bytes of one.
+fn densest(info: &png::Info) -> u64 {
+    8 * 1032 / (info.bits_per_pixel() as u64).max(1)
 }
 
 /// Any PNG as linear light: levels decoded by the curve that the file names, sRGB when it names none, in the primaries of sRGB
@@ -144,7 +171,7 @@ pub(super) fn read(source: Source, bytes: &mut dyn ReadSeek) -> Result<Image, Im
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(|e| unreadable(source, e))?;
     let info = reader.info();
-    let (width, height) = source.size(u64::from(info.width), u64::from(info.height))?;
+    let (width, height) = source.size(u64::from(info.width), u64::from(info.height), densest(info))?;
     let curve: Box<dyn Curve> = match encoding(info) {
         Encoding::Gamma(gamma) => Box::new(Gamma { gamma }),
         _ => Box::new(Srgb {}),
@@ -195,7 +222,8 @@ fn encoding(info: &png::Info) -> Encoding {
 
 /// What [`raster`] brings of a file whose head was read.
 fn layout_of<R: BufRead + Seek>(source: Source, reader: &png::Reader<R>) -> Result<Layout, ImageError> {
-    let size = source.size(u64::from(reader.info().width), u64::from(reader.info().height))?;
+    let info = reader.info();
+    let size = source.size(u64::from(info.width), u64::from(info.height), densest(info))?;
     let (color, depth) = reader.output_color_type();
     Ok(source.layout(size, color.samples() as u8, if depth == BitDepth::Sixteen { 2 } else { 1 }))
 }
@@ -270,6 +298,6 @@ pub(super) fn inspect(source: Source, bytes: &mut dyn ReadSeek) -> Result<Inspec
     let info = reader.info();
     let plain = info.uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
     let wide = info.utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap_or_default()));
-    let size = source.size(u64::from(info.width), u64::from(info.height))?;
+    let size = source.size(u64::from(info.width), u64::from(info.height), densest(info))?;
     Ok((size, plain.chain(wide).collect()))
 }

@@ -1,6 +1,6 @@
 //! WebP, lossless (RFC 9649). The encoder takes a whole picture, so the picture in 8 bits is held.
 
-use super::{Header, ReadSeek, RowWriter, Source};
+use super::{ENDS, Header, ReadSeek, RowWriter, Source};
 use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::Levels;
@@ -8,6 +8,10 @@ use crate::{Format, ImageError};
 use image_webp::{ColorType, DecodingError, EncodingError, WebPDecoder, WebPEncoder};
 use juggler_math::{Image, Rgb};
 use std::io::{BufRead, Seek, Write};
+
+/// Most pixels that a byte may hold. The format itself has no limit, since one color takes no bits; this one lets a file of
+/// 1 KiB have the longest sides that there are.
+const DENSEST: u64 = 1 << 18;
 
 /// Gathers rows and encodes them at the end.
 pub(super) struct Writer {
@@ -63,7 +67,7 @@ pub(super) fn raster(source: Source, bytes: &mut dyn ReadSeek) -> Result<Raster,
 }
 
 fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Layout, Vec<u8>), ImageError> {
-    let mut decoder = WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?;
+    let mut decoder = decoder(source, bytes)?;
     let layout = layout_of(source, &decoder)?;
     let size = decoder.output_buffer_size().ok_or_else(|| source.malformed("it is too large"))?;
     let mut samples = vec![0; size];
@@ -71,26 +75,54 @@ fn samples(source: Source, bytes: &mut dyn ReadSeek) -> Result<(Layout, Vec<u8>)
     Ok((layout, samples))
 }
 
+/// A decoder of a file that has as many bytes as its head says.
+fn decoder<'b>(source: Source, bytes: &'b mut dyn ReadSeek) -> Result<WebPDecoder<&'b mut dyn ReadSeek>, ImageError> {
+    let mut head = [0; 8];
+    bytes.read_exact(&mut head).and_then(|()| bytes.rewind()).map_err(|e| source.failed(e))?;
+    let [.., a, b, c, d] = head;
+    if u64::from(u32::from_le_bytes([a, b, c, d])) + 8 > source.length {
+        return Err(source.truncated());
+    }
+    WebPDecoder::new(bytes).map_err(|e| unreadable(source, e))
+}
+
 fn layout_of<R: BufRead + Seek>(source: Source, decoder: &WebPDecoder<R>) -> Result<Layout, ImageError> {
     let (width, height) = decoder.dimensions();
-    let size = source.size(u64::from(width), u64::from(height))?;
+    let size = source.size(u64::from(width), u64::from(height), DENSEST)?;
     Ok(source.layout(size, if decoder.has_alpha() { 4 } else { 3 }, 1))
 }
 
 /// What [`raster`] will bring.
 pub(super) fn layout(source: Source, bytes: &mut dyn ReadSeek) -> Result<Layout, ImageError> {
-    layout_of(source, &WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?)
+    layout_of(source, &decoder(source, bytes)?)
 }
 
 /// Width and height.
 pub(super) fn size(source: Source, bytes: &mut dyn ReadSeek) -> Result<(u32, u32), ImageError> {
-    let (width, height) = WebPDecoder::new(&mut *bytes).map_err(|e| unreadable(source, e))?.dimensions();
-    source.size(u64::from(width), u64::from(height))
+    let (width, height) = decoder(source, bytes)?.dimensions();
+    source.size(u64::from(width), u64::from(height), DENSEST)
 }
 
 fn unreadable(source: Source, error: DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(error) => source.failed(error),
-        other => source.malformed(other.to_string()),
+        other => source.malformed(in_words(&other)),
+    }
+}
+
+/// What is wrong, without the decoder's own words.
+fn in_words(error: &DecodingError) -> &'static str {
+    match error {
+        DecodingError::ChunkMissing => "a chunk is missing",
+        DecodingError::ChunkHeaderInvalid(_) | DecodingError::InvalidChunkSize => "the head of a chunk is damaged",
+        DecodingError::HuffmanError => "a Huffman code is damaged",
+        DecodingError::BitStreamError | DecodingError::TransformError => "its pixels are damaged",
+        DecodingError::NotEnoughInitData => ENDS,
+        DecodingError::ImageTooLarge | DecodingError::MemoryLimitExceeded => "it is too large",
+        DecodingError::InconsistentImageSizes | DecodingError::AlphaChunkSizeMismatch => {
+            "its sizes contradict each other"
+        }
+        DecodingError::UnsupportedFeature(_) => "it uses a feature of WebP that is not read",
+        _ => "its structure is damaged",
     }
 }

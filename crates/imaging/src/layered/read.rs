@@ -1,9 +1,11 @@
 //! Reading one layer of an EXR by the names of its channels.
 
-use crate::input::{open, sniff};
+use crate::codec::exr::{heads, unreadable};
+use crate::input::{open, source};
 use crate::{Format, ImageError, Limits};
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
+use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel};
 use std::io::{BufRead, Seek};
 use std::path::Path;
@@ -16,33 +18,21 @@ pub type LayerValues = (u32, u32, Vec<[f32; 3]>);
 pub fn read_layer(path: &Path, channels: &[&str]) -> Result<Option<LayerValues>, ImageError> {
     let place = path.display().to_string();
     let mut bytes = open(path)?;
-    if sniff(&place, &mut bytes)? != Format::Exr {
+    let limits = Limits::default();
+    let source = source(&place, &mut bytes, &limits)?;
+    if source.format != Format::Exr {
         return Ok(None);
     }
     let [Some(first), second, third] = [0, 1, 2].map(|number| channels.get(number).copied()) else { return Ok(None) };
     let names = [first, second.unwrap_or(first), third.unwrap_or(first)];
-    let wrong = |error: ExrError| match error {
-        ExrError::Io(source) => ImageError::Read { place: place.clone(), source },
-        other => ImageError::Malformed { place: place.clone(), format: Format::Exr, message: other.to_string() },
-    };
-    let Some(size) = size_of(&mut bytes, &names).map_err(wrong)? else { return Ok(None) };
-    let (width, height) = (size.0 as u64, size.1 as u64);
-    let Limits { most_pixels } = Limits::default();
-    if width.saturating_mul(height) > most_pixels {
-        return Err(ImageError::TooLarge { place, width, height, most_pixels });
-    }
-    bytes.rewind().map_err(|source| ImageError::Read { place: place.clone(), source })?;
-    let values = if second.is_none() { one(&mut bytes, first) } else { three(&mut bytes, names) }.map_err(wrong)?;
-    Ok(Some((width as u32, height as u32, values)))
-}
-
-/// The size of the layer with these channels.
-fn size_of(bytes: &mut (impl BufRead + Seek), names: &[&str; 3]) -> Result<Option<Vec2<usize>>, ExrError> {
-    let meta = exr::meta::MetaData::read_from_buffered(&mut *bytes, false)?;
-    let has = |header: &exr::meta::header::Header| {
-        names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name))
-    };
-    Ok(meta.headers.iter().find(|header| !header.deep && has(header)).map(|header| header.layer_size))
+    let has =
+        |header: &&Header| names.iter().all(|name| header.channels.list.iter().any(|channel| channel.name == **name));
+    let heads = heads(source, &mut bytes)?;
+    let Some(head) = heads.iter().filter(|head| !head.deep).find(has) else { return Ok(None) };
+    let values = if second.is_none() { one(&mut bytes, first) } else { three(&mut bytes, names) };
+    let values = values.map_err(|error| unreadable(source, error))?;
+    // The sides were checked to fit 32 bits.
+    Ok(Some((head.layer_size.0 as u32, head.layer_size.1 as u32, values)))
 }
 
 type Values = (usize, Vec<[f32; 3]>);

@@ -6,7 +6,7 @@ use juggler_math::testing::Random;
 use std::io::Cursor;
 use std::path::Path;
 
-const LIMITS: Limits = Limits { most_pixels: 10_000 };
+const LIMITS: Limits = Limits { most_pixels: 10_000, longest_side: 1_000 };
 
 fn files() -> Vec<(Format, Vec<u8>)> {
     let image = picture(19, 18, 3.0);
@@ -31,9 +31,16 @@ fn files_cut_at_every_byte_are_errors() {
             let result = try_all(&bytes[..length]);
             assert!(length > pixels_end || result.is_err(), "{format} cut at {length} of {}", bytes.len());
             if let Err(error) = result {
-                assert!(error.to_string().starts_with("a file: "), "{error}");
+                assert!(error.to_string().starts_with("cannot read `a file`: "), "{error}");
             }
         }
+    }
+}
+
+/// What is wrong is said in words, without the texts that decoders have for programmers.
+fn assert_plain(message: &str) {
+    for foreign in ["{", "::", "\"", "Some(", "0x", "ChunkType", "UTF-8", "DecodeError", "os error"] {
+        assert!(!message.contains(foreign), "{message}");
     }
 }
 
@@ -49,8 +56,9 @@ fn mutated_files_never_panic() {
                 let at = random.below(reach);
                 bytes[at] = [0, 255, 127, 128, random.bits() as u8][random.below(5)];
             }
-            if let Ok(image) = try_all(&bytes) {
-                assert!(image.pixels().len() <= 10_000, "{format}");
+            match try_all(&bytes) {
+                Ok(image) => assert!(image.pixels().len() <= 10_000, "{format}"),
+                Err(error) => assert_plain(&error.to_string()),
             }
         }
     }
@@ -104,6 +112,7 @@ fn what_is_no_picture_is_said_so() {
     }
     for wrong in ["/nonexistent/a.png", "/"] {
         let error = read(Path::new(wrong)).unwrap_err();
-        assert!(matches!(error, ImageError::Read { .. }) && error.to_string().starts_with(wrong), "{error}");
+        assert!(matches!(error, ImageError::Read { .. }), "{error}");
+        assert!(error.to_string().starts_with(&format!("cannot read `{wrong}`: ")), "{error}");
     }
 }

@@ -10,6 +10,7 @@
 )]
 
 mod animations;
+mod claims;
 mod common;
 mod formats;
 mod hostile;

@@ -5,7 +5,7 @@ use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, Layer, LayerAttr
 use juggler_imaging::{Encoding, Format, ImageError, Layout, Limits, Options, Raster, Samples, decode, decode_raster};
 use std::io::Cursor;
 
-const LIMITS: Limits = Limits { most_pixels: 10_000 };
+const LIMITS: Limits = Limits { most_pixels: 10_000, longest_side: 1_000 };
 
 fn read(bytes: &[u8]) -> Result<Raster, ImageError> {
     decode_raster("a file", Cursor::new(bytes), &LIMITS)
@@ -100,10 +100,11 @@ fn damaged_and_huge_files_are_errors() {
                 let result = read(&bytes[..length]);
                 assert!(length > pixels_end || result.is_err(), "{format} cut at {length} of {}", bytes.len());
             }
-            let small = decode_raster("a file", Cursor::new(&bytes), &Limits { most_pixels: 100 }).unwrap_err();
+            let small =
+                decode_raster("a file", Cursor::new(&bytes), &Limits { most_pixels: 100, ..LIMITS }).unwrap_err();
             assert!(small.to_string().contains("the limit of 100 pixels"), "{small}");
         }
     }
     let text = read(b"no picture at all").unwrap_err().to_string();
-    assert!(text.contains("not a picture in a known format"), "{text}");
+    assert!(text.contains("no known picture format"), "{text}");
 }

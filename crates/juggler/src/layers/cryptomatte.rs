@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 
 /// Things that a pixel lists.
 const RANKS: usize = 6;
+/// Channels of all layers: two for each of those things.
+pub const CHANNELS: usize = 2 * RANKS;
 
 /// The layers that hold masks of things with these names.
 pub fn headers(name: &str, names: &[String]) -> Vec<LayerHeader> {

@@ -20,6 +20,10 @@ pub const MAX_SIDE: u32 = 65_536;
 /// Most pixels of a picture: 16,384 × 16,384.
 pub const MAX_TEXELS: u64 = 1 << 28;
 
+/// What is checked of a picture before it is decoded.
+pub(super) const MAX_PICTURE: juggler_imaging::Limits =
+    juggler_imaging::Limits { most_pixels: MAX_TEXELS, longest_side: MAX_SIDE };
+
 /// A file, and what its numbers are taken for.
 pub type Name = (PathBuf, ColorSpace);
 
@@ -82,15 +86,9 @@ impl Picture {
             Err(error) => return Self { digest: [0; 32], pixels: Err(explain(&error)), state },
         };
         let digest = blake3::hash(&bytes).into();
-        let limits = juggler_imaging::Limits { most_pixels: MAX_TEXELS };
-        let raster = decode_raster(&format!("`{}`", path.display()), Cursor::new(&*bytes), &limits);
+        let raster = decode_raster(&path.display().to_string(), Cursor::new(&*bytes), &MAX_PICTURE);
         drop(bytes);
         let pixels = raster.map_err(|error: ImageError| error.to_string()).and_then(|raster| {
-            let Layout { width, height, .. } = raster.layout;
-            if width.max(height) > MAX_SIDE {
-                let shown = path.display();
-                return Err(format!("`{shown}`: {width} × {height} pixels, a side is {MAX_SIDE} pixels at most"));
-            }
             pyramid(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: holds no picture", path.display()))
         });
         Self { digest, pixels, state }

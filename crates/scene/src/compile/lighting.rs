@@ -1,6 +1,6 @@
 //! What light comes from: files of backgrounds and lights, each read once, and backgrounds that are ready to be used.
 
-use super::images::{Estimate, MAX_TEXELS};
+use super::images::{Estimate, MAX_PICTURE, MAX_TEXELS};
 use super::meshes::{Files, Library};
 use super::shelf::{Item, Shelf};
 use crate::description::{Backdrop, Description};
@@ -66,8 +66,7 @@ impl Library {
     fn panorama(&self, path: &std::path::Path) -> Arc<Item<Panorama>> {
         let shown = path.display();
         self.lighting().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
-            let limits = juggler_imaging::Limits { most_pixels: MAX_TEXELS };
-            let image = juggler_imaging::decode(&format!("`{shown}`"), Cursor::new(bytes), &limits);
+            let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &MAX_PICTURE);
             Panorama::new(image.map_err(|error| error.to_string())?).map_err(|wrong| format!("`{shown}` {wrong}"))
         })
     }

@@ -17,8 +17,9 @@ pub(crate) use put::put;
 
 use crate::report::Finding;
 use crate::store::Store;
+use juggler_imaging::regular;
+use std::io;
 use std::path::Path;
-use std::{fs, io};
 
 /// The files of a scene, merged into one tree.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,15 +58,11 @@ pub enum Unreadable {
 /// The text of a file.
 pub fn read_text(path: &Path) -> Result<String, Unreadable> {
     use io::Read;
-    let metadata = fs::metadata(path).map_err(Unreadable::Io)?;
-    if metadata.is_dir() {
-        return Err(Unreadable::NotText("this is a folder, not a file".into()));
-    }
-    if !metadata.is_file() {
-        return Err(Unreadable::NotText("this is not an ordinary file".into()));
-    }
+    let file = regular::open(path).map_err(|error| match error {
+        error if regular::is_of_kind(&error) => Unreadable::NotText(error.to_string()),
+        error => Unreadable::Io(error),
+    })?;
     let mut bytes = Vec::new();
-    let file = fs::File::open(path).map_err(Unreadable::Io)?;
     file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(Unreadable::Io)?;
     guard::text(bytes).map_err(Unreadable::NotText)
 }

@@ -5,6 +5,7 @@ use super::ply::{self, Announced};
 use super::sniff::Format;
 use super::stl;
 use super::{ImportError, Limits};
+use juggler_imaging::regular;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -61,12 +62,11 @@ impl Counts {
 /// what has been measured. Nothing for a file that no reader takes.
 pub fn estimate(path: &Path) -> Result<Estimate, ImportError> {
     let failed = |error: io::Error| ImportError { path: path.to_owned(), fault: error.into() };
-    let metadata = std::fs::metadata(path).map_err(failed)?;
-    let size = metadata.len();
-    if !metadata.is_file() || size > Limits::default().file_bytes {
+    let mut file = regular::open(path).map_err(failed)?;
+    let size = file.metadata().map_err(failed)?.len();
+    if size > Limits::default().file_bytes {
         return Ok(Estimate::default());
     }
-    let mut file = File::open(path).map_err(failed)?;
     let head = look(&mut file, 0, HEAD).map_err(failed)?;
     let counts = match format(path, &head, size) {
         Some(Format::Stl) if stl::announced(&head) == Some(size) => soup((size / stl::FACET).saturating_sub(1)),

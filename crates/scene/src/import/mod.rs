@@ -28,11 +28,11 @@ mod weld;
 pub use error::{Fault, ImportError, Place};
 pub use estimate::{Estimate, estimate};
 
+use juggler_imaging::regular;
 use juggler_tracer::shape::MeshData;
 use pieces::PIECE;
 use sniff::Format;
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::path::Path;
 
 /// A mesh, and what of the file is not in it.
@@ -131,12 +131,7 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, Imp
 }
 
 fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Fault> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        let kind = if metadata.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::Unsupported };
-        return Err(Fault::Read(kind.into()));
-    }
-    let file = File::open(path)?;
+    let file = regular::open(path)?;
     let size = file.metadata()?.len();
     limits.check_bytes(size)?;
     let mut bytes = Vec::new();

@@ -7,6 +7,7 @@ use juggler_scene::{Bundle, Scene};
 use juggler_tracer::texture::ColorSpace;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use tempfile::TempDir;
 
 /// A folder with a picture of two colours in every format, a 16-bit PNG, and a scene beside them.
@@ -131,9 +132,10 @@ fn wrong_files_say_what_is_wrong_and_where() {
         let cut = format!("cut.{}", format.ending());
         fs::write(path(&cut), &bytes[..bytes.len() / 2]).unwrap();
         let text = complaint(&folder, &cut);
-        assert!(text.contains(&format!("`{cut}`: not a readable {format} file")), "{text}");
+        assert!(text.contains(&format!("cannot read `{cut}`: unexpected end of file at byte ")), "{text}");
         assert!(text.contains("at: textures.a.image.file"), "{text}");
     }
+    assert!(Command::new("mkfifo").arg(path("pipe.png")).status().unwrap().success());
     // A head that promises 100,000 × 100,000 pixels.
     let mut huge = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n".to_vec();
     huge.extend([0; 64]);
@@ -144,11 +146,16 @@ fn wrong_files_say_what_is_wrong_and_where() {
     for (file, message) in [
         ("nowhere.png", "cannot read `nowhere.png`: there is no such file"),
         (".", "cannot read `.`: this is a folder, not a file"),
-        ("text.png", "`text.png`: not a picture in a known format (.png .jpg .exr .hdr .webp .pfm)"),
-        ("empty.png", "`empty.png`: not a picture in a known format"),
-        ("huge.hdr", "`huge.hdr`: 100000 × 100000 pixels are more than the limit of 268435456 pixels"),
+        ("pipe.png", "cannot read `pipe.png`: this is a named pipe (FIFO), not a regular file"),
+        ("/dev/zero", "cannot read `/dev/zero`: this is a device, not a regular file"),
+        (
+            "text.png",
+            "`text.png`: its first bytes are those of no known picture format (.png .jpg .exr .hdr .webp .pfm)",
+        ),
+        ("empty.png", "`empty.png`: its first bytes are those of no known picture format"),
+        ("huge.hdr", "`huge.hdr`: 100000 × 100000 pixels are more than a Radiance HDR file of 119 bytes can hold"),
         ("long.pfm", "`long.pfm`: 70000 × 1 pixels, a side is 65536 pixels at most"),
-        ("none.pfm", "`none.pfm`: not a readable PFM file: its size is 0 × 5"),
+        ("none.pfm", "`none.pfm`: its size is 0 × 5 (PFM"),
     ] {
         let text = complaint(&folder, file);
         assert!(text.contains(message), "{file}: {text}");

@@ -8,6 +8,7 @@ use juggler_tracer::light::AnyLight;
 use juggler_tracer::world::World;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use tempfile::TempDir;
 
 const LAMP: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 20\n0 90\n0\n100 50\n";
@@ -145,11 +146,13 @@ fn wrong_files_say_what_is_wrong_and_where() {
     fs::write(folder.path().join("none.pfm"), "Pf\n0 5\n-1\n").unwrap();
     let endless = [b"Pf\n1 1\n-1\n".as_slice(), &f32::INFINITY.to_le_bytes()].concat();
     fs::write(folder.path().join("endless.pfm"), endless).unwrap();
+    assert!(Command::new("mkfifo").arg(folder.path().join("pipe.exr")).status().unwrap().success());
     for (file, message) in [
+        ("pipe.exr", "cannot read `pipe.exr`: this is a named pipe (FIFO), not a regular file"),
         ("nowhere.exr", "cannot read `nowhere.exr`: there is no such file"),
         (".", "cannot read `.`: this is a folder, not a file"),
-        ("text.hdr", "`text.hdr`: not a picture in a known format"),
-        ("none.pfm", "`none.pfm`: not a readable PFM file: its size is 0 × 5"),
+        ("text.hdr", "`text.hdr`: its first bytes are those of no known picture format"),
+        ("none.pfm", "`none.pfm`: its size is 0 × 5 (PFM"),
         ("endless.pfm", "`endless.pfm` has pixels without end"),
     ] {
         let text = complaint(&folder, &panorama(file, ""));

@@ -6,11 +6,9 @@ use juggler::estimate;
 use juggler::film::{self, Description, Merge, Wanted};
 use juggler::imaging::layered::read_layer;
 use juggler::imaging::significance::Estimate;
-use juggler::imaging::{self, Facts, Format};
+use juggler::imaging::{self, Facts, Format, regular};
 use juggler::math::{Image, Rgb};
 use juggler::tracer::film::{BLOCK, Rect};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// One of the pictures.
@@ -67,10 +65,9 @@ impl Side {
     }
 }
 
-fn is_part(path: &Path) -> bool {
-    let mut start = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(12).read_to_end(&mut start));
-    path.is_file() && read.is_ok() && film::is_part(&start)
+/// Whether a file is a film part, by its first bytes.
+pub fn is_part(path: &Path) -> bool {
+    regular::first_bytes(path, 12).is_ok_and(|start| film::is_part(&start))
 }
 
 fn text<'m>(metadata: &'m [(String, String)], key: &str) -> Option<&'m str> {

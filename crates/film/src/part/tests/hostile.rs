@@ -237,6 +237,26 @@ fn heads_are_checked() {
     assert!(error.contains("version 2") && error.contains("versions up to 1"), "{error}");
 }
 
+#[test]
+fn heads_of_what_no_picture_can_be_are_refused_by_name() {
+    let refused = |change: &dyn Fn(&mut Description)| {
+        let mut part = description(TINY, 21);
+        change(&mut part);
+        forged_head(&Head { layers: layers(&part), part })
+    };
+    let whole = |part: &mut Description| {
+        part.size = [65_536; 2];
+        part.region = Rect { x: 0, y: 0, width: 65_536, height: 65_536 };
+    };
+    assert!(refused(&whole).contains("larger than any that can be rendered"));
+    assert!(refused(&|part| part.layers.entries = u32::MAX).contains("more objects (`entries`) than a scene can have"));
+    assert!(refused(&|part| part.layers.planes = u32::MAX).contains("more layers (`planes`) than a picture can keep"));
+    let groups = |part: &mut Description| part.layers.light_groups = vec!["a".into(); 200_000];
+    assert!(refused(&groups).contains("more groups of lights (`light_groups`) than a scene can have"));
+    // What a picture may have is not made room for if its chunk is too short for it.
+    assert!(refused(&|part| part.layers.planes = 4096).contains("packed layers cannot be unpacked"));
+}
+
 fn forged_head(head: &Head) -> String {
     Forged { head: serde_json::to_vec(head).unwrap(), ..Forged::new() }.refused()
 }

@@ -1,0 +1,49 @@
+//! Strings: names of a million bytes, what is no UTF-8, characters that a terminal would obey.
+
+use super::{Bomb, Content, objects};
+
+const CLASS: &str = "strings";
+
+fn scene(name: &str, text: impl Into<Vec<u8>>, place: &str) -> Bomb {
+    Bomb::scene(CLASS, name, text, place)
+}
+
+pub fn bombs() -> Vec<Bomb> {
+    let long = "x".repeat(1_000_000);
+    let material = |name: &str| objects(&format!(r#"{{"shape": "sphere", "material": "{name}"}}"#));
+    let titled = |title: &str| format!(r#"{{"version": 1, "title": "{title}", "objects": [{{"shape": "sphere"}}]}}"#);
+    let mesh = |file: &str| objects(&format!(r#"{{"shape": {{"mesh": {{"file": "{file}"}}}}}}"#));
+    let no_text = [titled("a").as_bytes(), b"\xff\xfe\x00"].concat();
+    let broken = |name: &str, bytes: &[u8]| {
+        scene(&format!("a mesh {name} with characters for terminals"), mesh(name), name)
+            .with(name, Content::Bytes(bytes.to_vec()))
+    };
+    let named = [b"#?RADIANCE\nCommand=\x1b[31mred\x07\n\n-Y 1 +X 1\n".as_slice(), &[1; 4]].concat();
+    let mut picture = Bomb::line(CLASS, "info bell.hdr", "bell.hdr");
+    picture.files.push(("bell.hdr".to_owned(), Content::Bytes(named)));
+    vec![
+        scene("a title of a million bytes", titled(&long), "title"),
+        scene("a material that is named by a million bytes", material(&long), "material"),
+        scene("a key of a million bytes", format!(r#"{{"version": 1, "{long}": 1}}"#), "bomb.json"),
+        scene("a file that is named by a million bytes", mesh(&format!("{long}.ply")), "file"),
+        scene("a name of escapes", material("\\u001b[31m\\u0007\\u0000"), "material"),
+        scene("a key of escapes", r#"{"version": 1, "\u001b[2J\u0007": 1}"#, "bomb.json"),
+        scene("a key of plain control characters", "{\"version\": 1, \"\u{1b}[2J\u{7}\": 1}", "bomb.json"),
+        scene("a file's name with a zero in it", mesh("a\\u0000b.ply"), "file"),
+        scene("half of a pair", titled("\\ud800"), "bomb.json"),
+        scene("what is no UTF-8", no_text, "bomb.json"),
+        scene("a text of zeros", vec![0; 100_000], "bomb.json"),
+        scene("right to left", material("\u{202e}gnp.exe"), "material"),
+        scene(
+            "a number of a million digits",
+            objects(&format!(r#"{{"shape": {{"sphere": {{"radius": {}}}}}}}"#, "1".repeat(1_000_000))),
+            "radius",
+        ),
+        scene("a comment of a million bytes", format!("// {long}\n{}", titled("a")), ""),
+        broken("bell.obj", b"v 0 0 \x1b[31m\x07\n"),
+        broken("bell.ply", b"ply\nformat ascii 1.0\nelement \x1b[31m\x07 x\nend_header\n"),
+        broken("bell.stl", b"solid a\nfacet \x1b[31m\x07\n"),
+        picture,
+        Bomb::line(CLASS, format!("render {} -o a.png", "y".repeat(100_000)), "error"),
+    ]
+}

@@ -1,0 +1,120 @@
+//! One function a reader: it takes any bytes, and returns. Whatever it panics with is a bug of the reader.
+
+use juggler::film::{Merge, Part, Wanted};
+use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
+use juggler::memory::Memory;
+use juggler::scene::Scene;
+use juggler::scene::expression::{Names, Quantity, evaluate};
+use juggler::scene::import::{self, parse};
+use juggler::tracer::light::Profile;
+use juggler::{LayerSet, Settings};
+use juggler_math::Rgb;
+use std::io::Cursor;
+use std::path::Path;
+
+/// Most pixels that a picture may claim here.
+const MOST_PIXELS: u64 = 1 << 22;
+/// Memory that a scene may ask for before it is compiled.
+const SCENE_BYTES: u64 = 512 << 20;
+
+/// A reader that is given any bytes.
+pub struct Target {
+    /// Name of the reader.
+    pub name: &'static str,
+    /// Gives bytes to the reader; whether it takes them.
+    pub read: fn(&[u8]) -> bool,
+}
+
+/// All readers.
+pub const TARGETS: [Target; 14] = [
+    Target { name: "scene", read: scene },
+    Target { name: "expression", read: expression },
+    Target { name: "obj", read: |bytes| mesh("a.obj", bytes) },
+    Target { name: "ply", read: |bytes| mesh("a.ply", bytes) },
+    Target { name: "stl", read: |bytes| mesh("a.stl", bytes) },
+    Target { name: "png", read: picture },
+    Target { name: "jpeg", read: picture },
+    Target { name: "exr", read: picture },
+    Target { name: "hdr", read: picture },
+    Target { name: "pfm", read: picture },
+    Target { name: "webp", read: picture },
+    Target { name: "ies", read: ies },
+    Target { name: "jfilm", read: part },
+    Target { name: "message", read: message },
+];
+
+/// The reader of that name.
+pub fn by_name(name: &str) -> Option<&'static Target> {
+    TARGETS.iter().find(|target| target.name == name)
+}
+
+/// Whether a scene is within a budget of memory, so that it may be compiled.
+pub fn is_affordable(scene: &Scene, settings: &Settings) -> bool {
+    Memory::of(scene, settings).is_ok_and(|memory| memory.fit(SCENE_BYTES, 1).is_ok())
+}
+
+fn scene(bytes: &[u8]) -> bool {
+    let Ok(scene) = Scene::from_json(String::from_utf8_lossy(bytes), "fuzz.json") else { return false };
+    let settings = Settings { size: Some([8, 8]), samples: Some(1), ..Settings::default() };
+    is_affordable(&scene, &settings) && scene.at_frame(1.5).is_ok() && scene.compile().is_ok()
+}
+
+fn expression(bytes: &[u8]) -> bool {
+    let names: Names = [("frame".to_owned(), 7.25.into()), ("v".to_owned(), Quantity::Vector(vec![1.0, -2.0, 0.5]))]
+        .into_iter()
+        .collect();
+    let value = evaluate(&String::from_utf8_lossy(bytes), &names);
+    value.as_ref().is_ok_and(|value| {
+        assert!(value.is_none_or(f64::is_finite), "an expression has the value {value:?}");
+        true
+    })
+}
+
+fn mesh(name: &str, bytes: &[u8]) -> bool {
+    let Ok(found) = parse(Path::new(name), bytes, &import::Limits::default()) else { return false };
+    let count = found.mesh.positions.len();
+    assert!(found.mesh.triangles.iter().flatten().all(|index| (*index as usize) < count), "an index is out of range");
+    assert!(found.mesh.positions.iter().all(|position| position.is_finite()), "a position is not finite");
+    true
+}
+
+fn picture(bytes: &[u8]) -> bool {
+    let limits = Limits { most_pixels: MOST_PIXELS, ..Limits::default() };
+    let image = decode("fuzz", Cursor::new(bytes), &limits);
+    let raster = decode_raster("fuzz", Cursor::new(bytes), &limits);
+    in_file(bytes, |path| (imaging::inspect(path).is_ok(), inspect_raster(path).is_ok()));
+    for error in [image.as_ref().err(), raster.as_ref().err()].into_iter().flatten() {
+        let told = error.to_string();
+        assert!(told.starts_with("cannot read `fuzz`: ") && !told.contains(['{', '\u{1b}']), "no plain words: {told}");
+    }
+    image.is_ok() || raster.is_ok()
+}
+
+fn ies(bytes: &[u8]) -> bool {
+    Profile::read(&String::from_utf8_lossy(bytes)).is_ok()
+}
+
+fn part(bytes: &[u8]) -> bool {
+    in_file(bytes, |path| {
+        let Ok(part) = Part::open(path) else { return false };
+        let is_whole = part.verify().is_ok();
+        let _ = LayerSet::of_part(&part.description().layers);
+        let _ = Merge::open(&[path], Wanted::Part);
+        let Ok(merge) = Merge::open(&[path], Wanted::Whole) else { return is_whole };
+        merge.rows(|_: &[Rgb]| Ok::<(), juggler::film::PartError>(())).is_ok()
+    })
+}
+
+fn message(bytes: &[u8]) -> bool {
+    juggler_serve::is_allowed(&String::from_utf8_lossy(bytes))
+}
+
+/// What comes of these bytes as a file.
+fn in_file<T: Default>(bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
+    let Ok(folder) = tempfile::tempdir() else { return T::default() };
+    let path = folder.path().join("fuzz");
+    if std::fs::write(&path, bytes).is_err() {
+        return T::default();
+    }
+    read(&path)
+}
