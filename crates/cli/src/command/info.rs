@@ -11,6 +11,7 @@ use crate::reproduce;
 use crate::source;
 use clap::Args;
 use juggler::film;
+use juggler::imaging::layered::{LayerName, layer_names};
 use juggler::imaging::{self, Facts, Format};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Scene, import};
@@ -56,6 +57,7 @@ impl Info {
 
     fn picture(&self, format: Format) -> Result<(), Failure> {
         let Facts { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+        let layers = layer_names(Path::new(&self.scene))?;
         for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
             *text = reproduce::told_by(&self.scene, text);
         }
@@ -63,13 +65,16 @@ impl Info {
             let texts: Map<String, Value> = metadata.into_iter().map(|(key, text)| (key, text.into())).collect();
             let name = format.ending();
             let json = json!({
-                "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts
+                "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts,
+                "layers": layers.iter().map(|layer| json!({"name": layer.name, "channels": layer.channels})).collect::<Vec<_>>(),
             });
             return console::print(&json.to_string());
         }
         let texts = metadata.iter().map(|(key, text)| row(key, text));
-        let lines =
-            [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))].into_iter().chain(texts);
+        let keys = std::iter::once("layers").chain(std::iter::repeat(""));
+        let layers = keys.zip(&layers).map(|(key, layer)| row(key, &layer_in_words(layer)));
+        let head = [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))];
+        let lines = head.into_iter().chain(layers).chain(texts);
         console::print(&lines.collect::<Vec<_>>().join("\n"))
     }
 }
@@ -84,6 +89,12 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 
 fn row(key: &str, value: &str) -> String {
     format!("{key:12} {value}")
+}
+
+/// `albedo: R, G, B`; channels without the name of a layer stand alone.
+fn layer_in_words(LayerName { name, channels }: &LayerName) -> String {
+    let channels = channels.join(", ");
+    if name.is_empty() { channels } else { format!("{name}: {channels}") }
 }
 
 fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
@@ -106,6 +117,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         row("instances", geometry.instances.to_string());
     }
     row("lights", geometry.lights.to_string());
+    row("emitting", counted(geometry.emitting_shapes as u128, "shape"));
     row("background", background_in_words(compiled.world.backdrop()));
     row("far lights", far_in_words(&compiled.world.far_lights()));
     row("materials", description.materials.len().to_string());
@@ -180,6 +192,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
             "unique_triangles": geometry.unique_triangles,
             "instances": geometry.instances,
             "lights": geometry.lights,
+            "emitting_shapes": geometry.emitting_shapes,
         },
         "background": {"kind": world.backdrop().name(), "mean": world.backdrop().mean().to_array()},
         "far_lights": far,

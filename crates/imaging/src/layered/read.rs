@@ -1,4 +1,4 @@
-//! Reading one layer of an EXR by the names of its channels.
+//! Names of an EXR's layers, and one of them read by the names of its channels.
 
 use crate::input::{open, sniff};
 use crate::{Format, ImageError, Limits};
@@ -11,6 +11,47 @@ use std::path::Path;
 /// A layer's width, height, and one value after the other for each pixel, row by row.
 pub type LayerValues = (u32, u32, Vec<[f32; 3]>);
 
+/// One layer of an EXR as its head names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LayerName {
+    /// Name: what stands before a channel's last dot, or else the name of the file's part; empty where there is neither.
+    pub name: String,
+    /// Channels without that name, such as `R`, in the order red, green, blue, alpha, then by the alphabet.
+    pub channels: Vec<String>,
+}
+
+/// Reads the names of all layers of an EXR, in the file's order. None for a file of another format.
+pub fn layer_names(path: &Path) -> Result<Vec<LayerName>, ImageError> {
+    let place = path.display().to_string();
+    let mut bytes = open(path)?;
+    if sniff(&place, &mut bytes)? != Format::Exr {
+        return Ok(Vec::new());
+    }
+    let meta = exr::meta::MetaData::read_from_buffered(&mut bytes, false).map_err(|error| failed(&place, error))?;
+    let mut layers: Vec<LayerName> = Vec::new();
+    for header in &meta.headers {
+        let part = header.own_attributes.layer_name.as_ref().map_or_else(String::new, ToString::to_string);
+        for channel in &header.channels.list {
+            let full = channel.name.to_string();
+            let (name, channel) = full.rsplit_once('.').unwrap_or((&part, &full));
+            match layers.iter_mut().find(|layer| layer.name == name) {
+                Some(layer) => layer.channels.push(channel.to_owned()),
+                None => layers.push(LayerName { name: name.to_owned(), channels: vec![channel.to_owned()] }),
+            }
+        }
+    }
+    let place_of = |channel: &String| ["R", "G", "B", "A"].iter().position(|known| known == channel).unwrap_or(4);
+    layers.iter_mut().for_each(|layer| layer.channels.sort_by_key(place_of));
+    Ok(layers)
+}
+
+fn failed(place: &str, error: ExrError) -> ImageError {
+    match error {
+        ExrError::Io(source) => ImageError::Read { place: place.to_owned(), source },
+        other => ImageError::Malformed { place: place.to_owned(), format: Format::Exr, message: other.to_string() },
+    }
+}
+
 /// Reads what stands in up to three channels, such as `variance.R`, `variance.G` and `variance.B`; where fewer are named, the first
 /// of them stands for the others. `None` where the file is no EXR, or none of its layers has them.
 pub fn read_layer(path: &Path, channels: &[&str]) -> Result<Option<LayerValues>, ImageError> {
@@ -21,10 +62,7 @@ pub fn read_layer(path: &Path, channels: &[&str]) -> Result<Option<LayerValues>,
     }
     let [Some(first), second, third] = [0, 1, 2].map(|number| channels.get(number).copied()) else { return Ok(None) };
     let names = [first, second.unwrap_or(first), third.unwrap_or(first)];
-    let wrong = |error: ExrError| match error {
-        ExrError::Io(source) => ImageError::Read { place: place.clone(), source },
-        other => ImageError::Malformed { place: place.clone(), format: Format::Exr, message: other.to_string() },
-    };
+    let wrong = |error| failed(&place, error);
     let Some(size) = size_of(&mut bytes, &names).map_err(wrong)? else { return Ok(None) };
     let (width, height) = (size.0 as u64, size.1 as u64);
     let Limits { most_pixels } = Limits::default();

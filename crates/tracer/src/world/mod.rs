@@ -246,6 +246,7 @@ impl World {
     pub fn geometry(&self) -> Geometry {
         let texture_bytes = self.materials.textures().image_bytes();
         let background_bytes = self.background.heap_bytes();
-        Geometry { texture_bytes, background_bytes, ..Geometry::of(&self.top, self.lamps.len()) }
+        let emitting_shapes = self.emitters.glowing().count();
+        Geometry { emitting_shapes, texture_bytes, background_bytes, ..Geometry::of(&self.top, self.lamps.len()) }
     }
 }
