@@ -61,6 +61,10 @@ pub struct Status {
     pub integrator: String,
     /// Its longest path, when it has one.
     pub max_depth: Option<u32>,
+    /// Whether the picture is to be shown denoised.
+    pub denoise: bool,
+    /// Whether what is shown is denoised.
+    pub denoised: bool,
     /// Sampler by name.
     pub sampler: String,
     /// Tone curve by name.
