@@ -73,6 +73,11 @@ async function firstPicture() {
     .filter((control) => !(control.ariaLabel || control.labels?.length || control.textContent.trim() || control.placeholder))
     .map((control) => control.outerHTML));
   assert.deepEqual(unnamed, [], "controls without a name");
+  const hidden = await tab.page.evaluate(() => {
+    const { scrollHeight, clientHeight } = document.getElementById("panel-body");
+    return scrollHeight - clientHeight;
+  });
+  assert(hidden <= 0, `a window of 1280 by 800 hides ${hidden} points of the settings`);
   return tab;
 }
 
@@ -148,6 +153,8 @@ async function tools(tab) {
   await tab.page.locator("#samples").fill("8");
   await keyboard.press("Enter");
   await tab.told("samples", (status) => status.samples_wanted === 8 && status.stage === "finished");
+  await tab.page.locator("#size").selectOption("320 180");
+  await tab.told("a smaller picture", (status) => status.size[0] === 320);
   await tab.page.locator("#denoise").click();
   await tab.told("a denoised picture", (status) => status.denoised && status.stage === "finished");
   assert.equal(await tab.page.locator("#denoise").getAttribute("aria-pressed"), "true");
@@ -155,6 +162,8 @@ async function tools(tab) {
   await tab.page.locator("#picture").focus();
   await keyboard.press("n");
   await tab.told("the noisy picture again", (status) => !status.denoise && !status.denoised && status.stage === "finished");
+  await tab.page.locator("#size").selectOption("640 480");
+  await tab.told("the old size", (status) => status.size[0] === 640 && status.stage === "finished");
   await tab.page.locator("#picture").focus();
   await keyboard.press("?");
   await until("the help", () => tab.visible("#help"));

@@ -88,16 +88,7 @@ impl Build {
             Task::Have(scene) => scene,
         };
         let scene = self.scene(&file)?;
-        let size = self.settings.size_of(&scene);
-        if bearable(size) != size {
-            self.settings.size = Some(bearable(size));
-        }
-        if pixels_of(size) > MOST_DENOISED {
-            self.settings.denoiser = None;
-        }
-        // What belongs to groups is kept apart, so that it can be mixed.
-        let groups = Names::of(&scene.description).light_groups.len();
-        self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
+        self.fit_settings(&scene);
         let mut picture = self.picture(&scene)?;
         let upward = picture.view().camera.upward();
         if let Some(camera) = &self.camera {
@@ -126,6 +117,19 @@ impl Build {
             subject.begin_interest();
         }
         Ok(subject)
+    }
+
+    /// Keeps size and denoising within what memory bears, and the light of groups apart, so that it can be mixed.
+    fn fit_settings(&mut self, scene: &Scene) {
+        let size = self.settings.size_of(scene);
+        if bearable(size) != size {
+            self.settings.size = Some(bearable(size));
+        }
+        if pixels_of(size) > MOST_DENOISED {
+            self.settings.denoiser = None;
+        }
+        let groups = Names::of(&scene.description).light_groups.len();
+        self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
     }
 
     /// The file's scene with the values that were set, at the frame.

@@ -40,7 +40,7 @@ mod worker;
 mod worlds;
 
 pub use build::{Build, MOST_PIXELS, Mistake, text_of};
-pub use coarse::{Pace, coarse_size};
+pub use coarse::{Pace, coarse_size, finer};
 pub use edit::{Channel, Edit, Fly, Orbit, Setting};
 pub use frame::Frame;
 pub use probe::Probe;

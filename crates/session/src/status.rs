@@ -89,6 +89,6 @@ pub struct Status {
     pub frame_rate: f64,
     /// Whether it plays.
     pub playing: bool,
-    /// When finished: the hash of the film, which is that of `juggler render`.
+    /// When finished: the hash of the film, which is that of `juggler render`, with `--denoise` where [`Self::denoise`] is on.
     pub hash: Option<String>,
 }

