@@ -49,7 +49,7 @@ export class Tab {
   constructor(page, pictures) {
     Object.assign(this, { page, pictures, status: null, wheel: null, faults: [], sent: [] });
     page.on("pageerror", (error) => this.faults.push(`${error}`));
-    page.on("console", (message) => message.type() === "error" && !/ERR_CONNECTION|WebSocket connection/.test(message.text()) && this.faults.push(message.text()));
+    page.on("console", (message) => message.type() === "error" && !/ERR_CONNECTION|WebSocket connection|status of 403/.test(message.text()) && this.faults.push(message.text()));
     page.on("websocket", (socket) => {
       socket.on("framereceived", ({ payload }) => typeof payload === "string" && Object.assign(this, JSON.parse(payload)));
       socket.on("framesent", ({ payload }) => this.sent.push(payload));

@@ -55,7 +55,14 @@ async function change(tab, act) {
 
 async function firstPicture() {
   const began = performance.now();
+  assert(/\?token=[0-9a-f]{32}$/.test(server.url), server.url);
+  const origin = new URL(server.url).origin;
+  const stranger = await browser.newContext();
+  const refused = await (await stranger.newPage()).goto(origin);
+  assert.equal(refused.status(), 403, "without the token");
+  await stranger.close();
   const tab = await open(desktop);
+  assert.equal(tab.page.url(), `${origin}/`, "the token is not left where a glance reads it");
   say(`first picture after ${Math.round(performance.now() - began)} ms`);
   await tab.finished();
   const fields = await tab.fields();
@@ -66,6 +73,11 @@ async function firstPicture() {
     .filter((control) => !(control.ariaLabel || control.labels?.length || control.textContent.trim() || control.placeholder))
     .map((control) => control.outerHTML));
   assert.deepEqual(unnamed, [], "controls without a name");
+  const hidden = await tab.page.evaluate(() => {
+    const { scrollHeight, clientHeight } = document.getElementById("panel-body");
+    return scrollHeight - clientHeight;
+  });
+  assert(hidden <= 0, `a window of 1280 by 800 hides ${hidden} points of the settings`);
   return tab;
 }
 
@@ -92,7 +104,8 @@ async function dragAndKeys(tab) {
   assert((await change(tab, () => keyboard.press("x", { delay: 200 }))) > 0.2, "X zooms");
   await keyboard.press("m");
   assert((await change(tab, () => drag([500, 400], [600, 380]))) > 0.2, "orbit");
-  assert(tab.sent.some((text) => `${text}`.includes("orbit")), "orbit mode");
+  const orbits = tab.sent.map(String).filter((text) => /orbit|pivot/.test(text));
+  assert(/pivot/.test(orbits[0]) && orbits.filter((text) => text.includes("pivot")).length === 1, `a drag begins with its pivot: ${orbits}`);
   await keyboard.press("m");
   await change(tab, () => mouse.dblclick(490, 400));
   assert((await change(tab, () => keyboard.press("Home"))) > 0.2, "undone");
@@ -140,6 +153,17 @@ async function tools(tab) {
   await tab.page.locator("#samples").fill("8");
   await keyboard.press("Enter");
   await tab.told("samples", (status) => status.samples_wanted === 8 && status.stage === "finished");
+  await tab.page.locator("#size").selectOption("320 180");
+  await tab.told("a smaller picture", (status) => status.size[0] === 320);
+  await tab.page.locator("#denoise").click();
+  await tab.told("a denoised picture", (status) => status.denoised && status.stage === "finished");
+  assert.equal(await tab.page.locator("#denoise").getAttribute("aria-pressed"), "true");
+  await tab.screenshot("14-denoised");
+  await tab.page.locator("#picture").focus();
+  await keyboard.press("n");
+  await tab.told("the noisy picture again", (status) => !status.denoise && !status.denoised && status.stage === "finished");
+  await tab.page.locator("#size").selectOption("640 480");
+  await tab.told("the old size", (status) => status.size[0] === 640 && status.stage === "finished");
   await tab.page.locator("#picture").focus();
   await keyboard.press("?");
   await until("the help", () => tab.visible("#help"));
@@ -151,6 +175,8 @@ async function save(tab) {
   await tab.finished();
   const [download] = await Promise.all([tab.page.waitForEvent("download"), tab.page.locator("#save-png").click()]);
   assert.equal(download.suggestedFilename(), "ball.png");
+  await until("the file is named", async () => (await tab.page.locator("#toast").innerText()) === "Saved ball.png" && tab.visible("#toast"));
+  await tab.screenshot("15-saved");
   const path = join(pictures, "saved.png");
   await download.saveAs(path);
   assert.equal(readFileSync(path).readUInt32BE(16), 640, "its width");
@@ -221,6 +247,11 @@ async function reconnect(tab) {
   await tab.screenshot("9-lost");
   assert(/trying again/.test(await tab.page.locator("#connection").innerText()));
   server = await startServer(program, words(port));
+  await until("the new token is told of", async () => /new token/.test(await tab.page.locator("#connection").innerText()));
+  assert.equal(await server.stop("SIGINT"), 130);
+  // A server that lets everybody in: the page comes back by itself.
+  server = await startServer(program, [...words(port), "--no-token"]);
+  assert.equal(server.url, `http://127.0.0.1:${port}/`);
   await until("it is there again", async () => !(await tab.visible("#connection")));
   // The new server numbers its pictures anew: what is compared with must be one of them.
   await until("a picture of the new server", async () => tab.status !== last && (await tab.shown()).revision === tab.status.revision);
@@ -240,10 +271,9 @@ async function wheel(tab) {
   await change(other, () => other.page.keyboard.press("d"));
   await tab.frame((shown) => shown.revision > revision);
   await other.page.close();
-  await until("the wheel is free", async () => /Nobody/.test(await tab.page.locator("#watching-text").innerText()));
+  await until("the only page steers without asking", async () => tab.wheel.steering && !(await tab.visible("#watching")));
   await tab.page.bringToFront();
   await change(tab, () => tab.page.keyboard.press("a"));
-  await until("it steers again", async () => !(await tab.visible("#watching")));
 }
 
 async function phone(tab) {

@@ -174,10 +174,18 @@ press Escape; sleep 0.3; like start back
 press Tab; sleep 0.5; shoot folded; press Tab; sleep 0.5; like start back
 say "the keys under ?, the panel folds"
 
-press ctrl+s; until_true test -s scene.png
+press ctrl+s; until_true test -s scene.png; unlike start saved-picture; shoot saved; like start back
+say "what was saved is told over the picture, for a while"
 "$juggler" render scene.json -o straight.png -q
 "$juggler" compare scene.png straight.png >/dev/null || fail "the saved picture is not that of juggler render"
 say "the saved picture is that of juggler render"
+
+"$juggler" render scene.json --denoise -o denoised.png -q
+! "$juggler" compare straight.png denoised.png >/dev/null || fail "denoising shows in nothing"
+saves_denoised() { rm -f scene.png; press ctrl+s; sleep 0.5; "$juggler" compare scene.png denoised.png >/dev/null 2>&1; }
+press n; until_true saves_denoised; shoot denoised
+press n; like start back
+say "N shows the picture that juggler render --denoise writes"
 
 ticks() { awk '{ print $14 + $15 }' "/proc/$viewer/stat"; }
 # Other work on the machine may delay the last frame: one quiet stretch of ten is enough.

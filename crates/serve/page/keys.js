@@ -8,7 +8,7 @@ export const GROUPS = [
   {
     name: "Camera",
     gestures: [
-      ["drag, one finger", "look around (fly), turn the scene (orbit)"],
+      ["drag, one finger", "look around (fly), turn the scene about the point to orbit (orbit)"],
       ["Shift drag, two fingers", "move sideways and up"],
       ["wheel, pinch", "zoom (fly), come closer (orbit)"],
       ["click, tap", "set the point to orbit, and the focus of a lens"],
@@ -44,6 +44,7 @@ export const GROUPS = [
     keys: [
       press(["t"], "whole", "refine the whole picture"),
       press(["p"], "probe", "probe the pixel: follow, pin, off"),
+      press(["n"], "denoise", "denoise, when nothing moves"),
       press(["["], "darker", "exposure"),
       press(["]"], "brighter", "exposure"),
       ...["picture", "albedo", "normals", "depth", "objects", "materials", "samples", "noise"].map((name, index) => press([`${index + 1}`], `channel${index}`, name)),

@@ -12,7 +12,7 @@ import { fillScenes, openScenes } from "./scenes.js";
 const byId = (id) => document.getElementById(id);
 const canvas = byId("picture");
 const picture = new Picture(canvas, byId("region"));
-const PROBE_MILLISECONDS = 60, UNSEEN_MILLISECONDS = 300, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25;
+const PROBE_MILLISECONDS = 60, UNSEEN_MILLISECONDS = 300, SPEED_STEP = 1.5, EXPOSURE_STEP = 0.25, KEPT_MILLISECONDS = 60000;
 
 let status = null, catalogue = null, wheel = { steering: true, free: false, watching: 1 };
 let asked = null;
@@ -159,6 +159,7 @@ const commands = {
     byId("bookmark-name").focus();
   },
   whole: () => edit({ region: null }),
+  denoise: () => edit({ setting: { denoise: !status?.denoise } }),
   probe: () => setProbing({ off: "follow", follow: "pin", pin: "off" }[probing.mode]),
   brighter: () => edit({ setting: { exposure: (status?.exposure ?? 0) + EXPOSURE_STEP } }),
   darker: () => edit({ setting: { exposure: (status?.exposure ?? 0) - EXPOSURE_STEP } }),
@@ -189,6 +190,18 @@ const keys = new Keys({
   isBlocked: () => document.querySelector("dialog[open]") !== null,
 });
 
+// Downloads the picture as it is now, and names the file.
+async function save(address) {
+  notices.toast("Saving the picture");
+  const answer = await fetch(address).catch(() => null);
+  if (!answer?.ok) return notices.toast(`Not saved: ${answer ? (await answer.text()).trim() : "the server does not answer"}`);
+  const [, name] = /filename="([^"]+)"/.exec(answer.headers.get("content-disposition")) ?? [null, "picture"];
+  const file = URL.createObjectURL(await answer.blob());
+  notices.element("a", { href: file, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(file), KEPT_MILLISECONDS);
+  notices.toast(`Saved ${name}`);
+}
+
 function togglePanel(open = document.body.classList.contains("panel-closed")) {
   document.body.classList.toggle("panel-closed", !open);
   for (const id of ["toggle-panel", "sheet-handle"]) byId(id).ariaExpanded = `${open}`;
@@ -196,6 +209,12 @@ function togglePanel(open = document.body.classList.contains("panel-closed")) {
 
 byId("toggle-panel").onclick = () => togglePanel();
 byId("sheet-handle").onclick = () => togglePanel();
+for (const id of ["save-png", "save-exr"]) {
+  byId(id).onclick = (event) => {
+    event.preventDefault();
+    save(event.currentTarget.href);
+  };
+}
 byId("open-help").onclick = commands.help;
 byId("open-scenes").onclick = commands.scenes;
 byId("take-wheel").onclick = () => connection.send({ steer: true });

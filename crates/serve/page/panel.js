@@ -61,6 +61,7 @@ export function watchPanel(catalogue, edit, fit) {
   byId("reset").onclick = () => edit("reset");
   byId("reload").onclick = () => edit("reload");
   byId("whole").onclick = () => edit({ region: null });
+  byId("denoise").onclick = ({ currentTarget }) => edit({ setting: { denoise: currentTarget.ariaPressed !== "true" } });
 }
 
 function watchSize(catalogue, edit, fit) {
@@ -112,6 +113,7 @@ export function showStatus(status, title, edit) {
   showFigures(status);
   for (const id of ["channel", "tone", "integrator", "sampler", "scheduler", "threads", "exposure"]) show(id, status[id]);
   byId("exposure-text").textContent = `${status.exposure > 0 ? "+" : ""}${Number(status.exposure.toFixed(2))}`;
+  byId("denoise").ariaPressed = `${status.denoise}`;
   show("samples", status.samples_wanted);
   byId("depth-row").hidden = status.max_depth === null;
   show("max-depth", status.max_depth ?? "");
@@ -134,7 +136,7 @@ function showFigures(status) {
   figure("fps", status.frames_per_second > 0 ? status.frames_per_second.toFixed(status.frames_per_second < 10 ? 1 : 0) : "–");
   figure("rays", status.rays_per_second > 0 ? count(status.rays_per_second) : "–");
   const coarse = status.coarseness > 1 ? `, 1/${status.coarseness}` : "";
-  figure("size", `${status.size[0]} × ${status.size[1]}${coarse}`);
+  figure("size", `${status.size[0]} × ${status.size[1]}${coarse}${status.denoised ? ", denoised" : ""}`);
 }
 
 function showTime(status) {

@@ -18,6 +18,8 @@ export function watchPointer(canvas, picture, on) {
     if (!status) return;
     if (pinch !== 1) on.edit(camera.closer(pinch));
     if (x === 0 && y === 0) return;
+    if (gesture?.pivot) on.edit({ pivot: gesture.pivot });
+    if (gesture) gesture.pivot = null;
     const edit = gesture?.slides ? camera.slide : camera.drag;
     on.edit(edit(x, y, picture.scale, status));
   };
@@ -43,7 +45,9 @@ export function watchPointer(canvas, picture, on) {
     const fingers = pointers.size;
     const chooses = fingers === 1 && on.choosesRegion();
     const slides = fingers > 1 || event.shiftKey || event.button === 1 || event.button === 2;
-    gesture = { start: point, at: performance.now(), slides, chooses, travelled: gesture && fingers > 1 ? Infinity : 0, middle: middle(), spread: spread() };
+    // An orbit turns about what lies under the pointer, where no other point was chosen.
+    const pivot = camera.steering.mode === "orbit" && !slides ? picture.at(...point) : null;
+    gesture = { start: point, at: performance.now(), slides, chooses, pivot, travelled: gesture && fingers > 1 ? Infinity : 0, middle: middle(), spread: spread() };
     canvas.classList.toggle("dragging", !chooses);
     event.preventDefault();
   });

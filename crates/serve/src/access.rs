@@ -1,13 +1,17 @@
-//! Who is let in.
+//! Access rules for every request.
 //!
-//! A page of another site must not reach this server through the browser of somebody who sits at this machine:
+//! Neither other users of this machine nor other sites' pages, through the browser of somebody who sits at it, may reach
+//! this server:
 //! - `Host` names this machine by a loopback name or by the very address that was connected to, with the right port. A
 //!   foreign name that was made to point here (DNS rebinding) is refused.
 //! - `Origin`, which browsers send with WebSockets and which pages cannot forge, is this server's own. A WebSocket needs
 //!   one; nothing else changes anything.
-//! - A server that other machines reach asks every request for a token: `?token=` or a cookie that the page got by it.
+//! - Every request needs a token: `?token=` or a cookie that the page got by it. Only a server at a loopback address may
+//!   be started without one.
+//!
+//! A refusal gives its reason and repeats nothing of the request: what was sent may be meant for whoever reads the answer
+//! or the log.
 
-use crate::refusals::quoted;
 use axum::http::request::Parts;
 use axum::http::uri::Authority;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, header};
@@ -69,13 +73,13 @@ pub enum Entry {
 }
 
 impl Access {
-    /// For a server at this port; with a token, all need it.
+    /// Rules of a server at this port; with a token, every request needs it.
     pub fn new(port: u16, token: Option<Token>) -> Self {
         Self { port, token }
     }
 
     /// Whether a request is let in, or why not.
-    pub fn check(&self, request: &Parts, peer: Peer) -> Result<Entry, String> {
+    pub fn check(&self, request: &Parts, peer: Peer) -> Result<Entry, &'static str> {
         let host = self.check_host(request, peer)?;
         check_origin(request, host)?;
         self.check_token(request)
@@ -92,12 +96,12 @@ impl Access {
         format!("juggler_{}", self.port)
     }
 
-    fn check_host<'r>(&self, request: &'r Parts, peer: Peer) -> Result<&'r str, String> {
+    fn check_host<'r>(&self, request: &'r Parts, peer: Peer) -> Result<&'r str, &'static str> {
         let host = single(&request.headers, &header::HOST)?.ok_or("no Host")?;
         let named = request.uri.authority().map(Authority::as_str);
         for name in [Some(host), named].into_iter().flatten() {
             if !self.is_own(name, peer.local.ip()) {
-                return Err(format!("the Host {} is not this server", quoted(name)));
+                return Err("the Host is another server: open the address that this one printed");
             }
         }
         Ok(host)
@@ -116,42 +120,42 @@ impl Access {
         }
     }
 
-    fn check_token(&self, request: &Parts) -> Result<Entry, String> {
+    fn check_token(&self, request: &Parts) -> Result<Entry, &'static str> {
         let Some(token) = &self.token else { return Ok(Entry::Known) };
         let pairs = request.uri.query().unwrap_or_default().split('&');
         if let Some(given) = pairs.filter_map(|pair| pair.strip_prefix("token=")).next() {
-            return if token.is(given) { Ok(Entry::ByAddress) } else { Err("a wrong token".into()) };
+            return if token.is(given) { Ok(Entry::ByAddress) } else { Err("a wrong token") };
         }
         let name = self.cookie_name();
         let cookies = request.headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
         let mut pairs = cookies.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
         match pairs.find(|(key, _)| *key == name) {
             Some((_, given)) if token.is(given) => Ok(Entry::Known),
-            Some(_) => Err("a wrong token".into()),
-            None => Err("no token".into()),
+            Some(_) => Err("a wrong token"),
+            None => Err("no token: open the address that the server printed"),
         }
     }
 }
 
 /// Browsers name the page that asks; it must be one of this server.
-fn check_origin(request: &Parts, host: &str) -> Result<(), String> {
+fn check_origin(request: &Parts, host: &str) -> Result<(), &'static str> {
     let changes = !matches!(request.method, Method::GET | Method::HEAD);
     match single(&request.headers, &header::ORIGIN)? {
         Some(origin) if origin.strip_prefix("http://").is_some_and(|own| own.eq_ignore_ascii_case(host)) => Ok(()),
-        Some(origin) => Err(format!("the Origin {} is another site", quoted(origin))),
-        None if changes || request.headers.contains_key(header::UPGRADE) => Err("no Origin".into()),
+        Some(_) => Err("the Origin is another site"),
+        None if changes || request.headers.contains_key(header::UPGRADE) => Err("no Origin"),
         None => Ok(()),
     }
 }
 
 /// A header that may be there once.
-fn single<'r>(headers: &'r HeaderMap, name: &HeaderName) -> Result<Option<&'r str>, String> {
+fn single<'r>(headers: &'r HeaderMap, name: &HeaderName) -> Result<Option<&'r str>, &'static str> {
     let mut values = headers.get_all(name).iter();
     let first = values.next();
     if values.next().is_some() {
-        return Err(format!("more than one {name}"));
+        return Err("a header that may be there once is there twice");
     }
-    first.map(|value| value.to_str().map_err(|_| format!("an unreadable {name}"))).transpose()
+    first.map(|value| value.to_str().map_err(|_| "an unreadable header")).transpose()
 }
 
 #[cfg(test)]

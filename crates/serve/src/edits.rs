@@ -31,7 +31,7 @@ pub fn check(edit: &Edit, scene: Option<&str>, local: bool) -> Result<(), String
             finite(&[*yaw_degrees, *pitch_degrees, *closer].map(f64::from))
         }
         Edit::Zoom(factor) => finite(&[f64::from(*factor)]),
-        Edit::Focus(pixel) | Edit::Frame(Some(pixel)) => finite(&pixel.map(f64::from)),
+        Edit::Focus(pixel) | Edit::Pivot(pixel) | Edit::Frame(Some(pixel)) => finite(&pixel.map(f64::from)),
         Edit::At(frame) => finite(&[*frame]),
         Edit::Camera(name) => short(name),
         Edit::Bookmark(_) if !local => Err("bookmarks are kept in the scene's file: only from this machine".into()),
@@ -79,9 +79,12 @@ fn check_setting(setting: &Setting) -> Result<(), String> {
         Setting::Integrator(name) | Setting::Sampler(name) | Setting::Tone(name) | Setting::Scheduler(name) => {
             short(name)
         }
-        Setting::Samples(_) | Setting::Threads(_) | Setting::Exposure(_) | Setting::MaxDepth(_) | Setting::Seed(_) => {
-            Ok(())
-        }
+        Setting::Samples(_)
+        | Setting::Threads(_)
+        | Setting::Exposure(_)
+        | Setting::MaxDepth(_)
+        | Setting::Denoise(_)
+        | Setting::Seed(_) => Ok(()),
     }
 }
 

@@ -29,7 +29,7 @@ impl Refusals {
         Self { log: Box::new(log), window: Mutex::new(window) }
     }
 
-    /// Says what was refused, and from whom. What comes from outside is quoted and cut by [`quoted`].
+    /// Says what was refused, and from whom. `why` holds nothing that was sent.
     pub fn say(&self, who: impl Display, why: &str) {
         let mut window = self.window.lock().unwrap_or_else(PoisonError::into_inner);
         if window.since.elapsed() > WINDOW {
@@ -44,12 +44,6 @@ impl Refusals {
             (self.log)(&format!("refused: {who}: {}", cut(why)));
         }
     }
-}
-
-/// What others wrote, fit for a log: no control characters, not long.
-pub fn quoted(text: &str) -> String {
-    let text: String = text.chars().take(LONGEST / 3).collect();
-    format!("{text:?}")
 }
 
 fn cut(text: &str) -> String {
@@ -70,6 +64,5 @@ mod tests {
         let lines = lines.lock().unwrap();
         assert_eq!(lines.len(), MOST as usize);
         assert!(lines.iter().all(|line| line.len() < 300 && !line.contains('\n')));
-        assert_eq!(quoted("a\u{1b}[31m\n"), "\"a\\u{1b}[31m\\n\"");
     }
 }

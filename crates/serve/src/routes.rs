@@ -76,9 +76,8 @@ async fn catalogue(State(hub): State<Arc<Hub>>) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], hub.catalogue.text().to_owned()).into_response()
 }
 
-async fn thumbnail(State(hub): State<Arc<Hub>>, Path(name): Path<String>) -> Response {
-    let scene = name.strip_suffix(".jpg").unwrap_or_default();
-    match hub.catalogue.thumbnail(scene).await {
+async fn thumbnail(Path(name): Path<String>) -> Response {
+    match name.strip_suffix(".jpg").and_then(juggler_session::thumbnail) {
         Some(picture) => ([(header::CONTENT_TYPE, "image/jpeg")], picture).into_response(),
         None => (StatusCode::NOT_FOUND, "there is no such picture\n").into_response(),
     }

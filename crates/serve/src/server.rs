@@ -22,8 +22,11 @@ const ENCODERS: usize = 4;
 pub struct Options {
     /// Where it listens; port 0 takes a free one.
     pub address: SocketAddr,
-    /// Whether the address may be one that other machines reach. Every request then needs a token.
+    /// Whether the address may be one that other machines reach.
     pub allow_remote: bool,
+    /// Whether every request needs the token that [`Server::url`] contains. `true` by default. `false` opens a loopback
+    /// server to every user and program of this machine; a server that other machines reach has a token in any case.
+    pub token: bool,
     /// The scene file that pages may go back to, besides built-in scenes, as the session was opened with it.
     pub scene: Option<String>,
     /// How much of anything there may be.
@@ -33,7 +36,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 8080));
-        Self { address, allow_remote: false, scene: None, limits: Limits::default() }
+        Self { address, allow_remote: false, token: true, scene: None, limits: Limits::default() }
     }
 }
 
@@ -72,8 +75,7 @@ impl Default for Limits {
 pub enum ServeError {
     /// Nobody asked for a server that others reach.
     #[error(
-        "{0} can be reached from other machines: an ssh tunnel to 127.0.0.1 is safer; `--allow-remote` serves there, \
-         with a token that every request needs"
+        "{0} can be reached from other machines: an ssh tunnel to 127.0.0.1 is safer; `--allow-remote` serves there"
     )]
     Remote(SocketAddr),
     /// The port is taken.
@@ -120,7 +122,7 @@ impl Server {
         })?;
         listener.set_nonblocking(true).map_err(ServeError::System)?;
         let address = listener.local_addr().map_err(ServeError::System)?;
-        let token = if remote { Some(Token::random().map_err(ServeError::System)?) } else { None };
+        let token = (remote || options.token).then(Token::random).transpose().map_err(ServeError::System)?;
         Ok(Self { listener, address, token, session, options, refusals: Refusals::new(log) })
     }
 
@@ -129,7 +131,7 @@ impl Server {
         self.address
     }
 
-    /// What to open in a browser; with the token, when one is needed. An address that means all of this machine's is
+    /// What to open in a browser; with the token, where requests need one. An address that means all of this machine's is
     /// shown as it is: the reader knows by which name the machine is reached.
     pub fn url(&self) -> String {
         match &self.token {

@@ -6,7 +6,6 @@ use crate::access::Peer;
 use crate::edits;
 use crate::hub::Hub;
 use crate::message::{FromPage, ToPage};
-use crate::refusals::quoted;
 use crate::wheel::PageId;
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::StreamExt;
@@ -82,7 +81,7 @@ impl Listener {
             Ok(FromPage::Probe(pixel)) => self.probe(pixel).await,
             Ok(FromPage::Steer(_)) => self.hub.turn(|wheel| wheel.take(self.id)),
             Ok(FromPage::Here(_)) => {}
-            Err(error) => self.refuse(&format!("a message that means nothing ({error}): {}", quoted(text))).await,
+            Err(error) => self.refuse(&format!("a message that means nothing, at column {}", error.column())).await,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Who steers. Any number of pages may watch; one steers.
+//! Which page steers. Any number of pages may watch; one steers.
 
 /// A page, by a number that none had before it.
 pub type PageId = u64;
@@ -9,22 +9,25 @@ pub struct Wheel {
     /// Counts up with every change.
     pub number: u64,
     steering: Option<PageId>,
-    watching: usize,
+    pages: Vec<PageId>,
 }
 
 impl Wheel {
     /// A page comes; it steers when nobody else does.
     pub fn come(&mut self, page: PageId) {
         self.number += 1;
-        self.watching += 1;
+        self.pages.push(page);
         self.steering.get_or_insert(page);
     }
 
-    /// A page goes; if it steered, the wheel is free.
+    /// A page goes. If it steered, the only page that is left steers; of several none does before one asks.
     pub fn go(&mut self, page: PageId) {
         self.number += 1;
-        self.watching = self.watching.saturating_sub(1);
+        self.pages.retain(|other| *other != page);
         self.steering = self.steering.filter(|steering| *steering != page);
+        if let [alone] = self.pages[..] {
+            self.steering.get_or_insert(alone);
+        }
     }
 
     /// A page takes it, from whomever has it: the people who watch can talk to each other.
@@ -45,7 +48,7 @@ impl Wheel {
 
     /// How many pages are there.
     pub fn watching(&self) -> usize {
-        self.watching
+        self.pages.len()
     }
 }
 
@@ -64,9 +67,14 @@ mod tests {
         wheel.come(3);
         wheel.take(3);
         assert!(wheel.is_steered_by(3) && !wheel.is_steered_by(1));
-        wheel.go(3);
-        assert!(wheel.is_free() && wheel.watching() == 1);
         wheel.come(4);
-        assert!(wheel.is_steered_by(4));
+        wheel.go(3);
+        assert!(wheel.is_free() && wheel.watching() == 2, "two are left: neither is preferred");
+        wheel.go(4);
+        assert!(wheel.is_steered_by(1) && wheel.watching() == 1, "one is left");
+        wheel.go(1);
+        assert!(wheel.is_free() && wheel.watching() == 0);
+        wheel.come(5);
+        assert!(wheel.is_steered_by(5));
     }
 }

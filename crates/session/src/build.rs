@@ -12,6 +12,9 @@ use std::sync::Arc;
 /// Most pixels of a picture that is looked at: their samples are all held in memory.
 pub const MOST_PIXELS: u64 = 1 << 25;
 
+/// Most pixels of a picture that is shown denoised: the filter needs up to 320 bytes for each.
+pub const MOST_DENOISED: u64 = 1 << 21;
+
 /// A world to be built.
 pub struct Build {
     pub(crate) task: Task,
@@ -26,6 +29,8 @@ pub struct Build {
     pub(crate) kept: Vec<(String, AnyCamera)>,
     /// Factors on groups of lights, by name.
     pub(crate) gains: Vec<(String, Rgb)>,
+    /// The point of interest that was chosen; it stays with the camera.
+    pub(crate) interest: Option<Vec3>,
     /// The subject as it was, whose world may be that of the new one.
     pub(crate) before: Option<(Arc<Scene>, Arc<Picture>)>,
 }
@@ -55,7 +60,8 @@ impl Build {
         let settings = Settings { size, ..Settings::default() };
         let (values, kept, gains) = (Vec::new(), Vec::new(), Vec::new());
         let (task, name) = (Task::Open, name.to_owned());
-        Self { task, name, values, frame: 0.0, settings, size, camera: None, kept, gains, before: None }
+        let (camera, interest, before) = (None, None, None);
+        Self { task, name, values, frame: 0.0, settings, size, camera, kept, gains, interest, before }
     }
 
     /// A scene that a program made.
@@ -82,20 +88,15 @@ impl Build {
             Task::Have(scene) => scene,
         };
         let scene = self.scene(&file)?;
-        let size = self.settings.size_of(&scene);
-        if bearable(size) != size {
-            self.settings.size = Some(bearable(size));
-        }
-        // What belongs to groups is kept apart, so that it can be mixed.
-        let groups = Names::of(&scene.description).light_groups.len();
-        self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
+        self.fit_settings(&scene);
         let mut picture = self.picture(&scene)?;
         let upward = picture.view().camera.upward();
         if let Some(camera) = &self.camera {
             picture = picture.seen(View { camera: camera.clone(), ..picture.view() })?;
         }
         let Self { name, values, frame, settings, size, camera, kept, gains, .. } = self;
-        let (picture, interest, held) = (Arc::new(picture), Vec3::ZERO, false);
+        let chosen = self.interest.filter(|_| camera.is_some());
+        let (picture, interest, held) = (Arc::new(picture), chosen.unwrap_or_default(), chosen.is_some());
         let mut subject = Subject {
             name,
             file,
@@ -112,8 +113,23 @@ impl Build {
             held,
             picture,
         };
-        subject.look_for_interest();
+        if !held {
+            subject.begin_interest();
+        }
         Ok(subject)
+    }
+
+    /// Keeps size and denoising within what memory bears, and the light of groups apart, so that it can be mixed.
+    fn fit_settings(&mut self, scene: &Scene) {
+        let size = self.settings.size_of(scene);
+        if bearable(size) != size {
+            self.settings.size = Some(bearable(size));
+        }
+        if pixels_of(size) > MOST_DENOISED {
+            self.settings.denoiser = None;
+        }
+        let groups = Names::of(&scene.description).light_groups.len();
+        self.settings.aovs = if groups > 1 { vec![Aov::LightGroups] } else { Vec::new() };
     }
 
     /// The file's scene with the values that were set, at the frame.
@@ -160,9 +176,14 @@ fn chosen_camera<'s>(settings: &Settings, scene: &'s Scene) -> Option<&'s AnyCam
     named.unwrap_or_else(|| description.camera.as_ref().or_else(|| several.values().next()))
 }
 
+/// Width times height.
+pub fn pixels_of([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height)
+}
+
 /// A size whose film can be held in memory, of the same shape.
 fn bearable([width, height]: [u32; 2]) -> [u32; 2] {
-    let pixels = u64::from(width) * u64::from(height);
+    let pixels = pixels_of([width, height]);
     let scale = (MOST_PIXELS as f64 / pixels.max(1) as f64).sqrt();
     if pixels <= MOST_PIXELS {
         [width, height]

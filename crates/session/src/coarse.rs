@@ -2,6 +2,8 @@
 
 /// Edges of the squares that stand for one pixel.
 const STEPS: [u32; 14] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
+/// Edges of the squares of the passes over the whole picture that come before its samples.
+const PASSES: [u32; 4] = [8, 4, 2, 1];
 /// Pixels of a frame about whose speed nothing is known.
 const FIRST: f64 = 1500.0;
 /// How much of the budget is planned for.
@@ -37,6 +39,13 @@ impl Pace {
         let area = |step: u32| coarse_size(size, step).map(f64::from).iter().product::<f64>();
         STEPS.into_iter().find(|step| area(*step) <= most).unwrap_or(STEPS[STEPS.len() - 1])
     }
+}
+
+/// Squares of the next finer pass over the whole picture, for one that is shown in `shown` instead of `size` pixels; `None`
+/// when all pixels are there.
+pub fn finer(shown: [u32; 2], size: [u32; 2]) -> Option<u32> {
+    let edge = |axis: usize| size[axis].div_ceil(shown[axis].max(1));
+    PASSES.into_iter().find(|step| *step < edge(0).max(edge(1)))
 }
 
 /// Width and height in squares.
@@ -76,6 +85,23 @@ mod tests {
         pace.learn(0.0, 1.0);
         pace.learn(10.0, 0.0);
         assert_eq!(pace.rate, Some(100.0), "nothing says nothing");
+    }
+
+    #[test]
+    fn passes_lead_from_any_coarseness_to_all_pixels() {
+        for size in [SIZE, [641, 3], [1, 1], [20, 15], [1, 900]] {
+            for first in STEPS {
+                let (mut shown, mut steps) = (coarse_size(size, first), Vec::new());
+                while let Some(step) = finer(shown, size) {
+                    steps.push(step);
+                    shown = coarse_size(size, step);
+                }
+                assert_eq!(shown, size, "from {first}");
+                assert!(steps.len() <= 4 && steps.iter().all(|step| *step < first), "{size:?} from {first}: {steps:?}");
+            }
+        }
+        assert_eq!(finer(coarse_size(SIZE, 16), SIZE), Some(8));
+        assert_eq!(finer(coarse_size(SIZE, 3), SIZE), Some(2));
     }
 
     #[test]

@@ -20,6 +20,9 @@ pub enum Edit {
     Zoom(f32),
     /// What is seen at this pixel becomes the point of interest, round which one orbits; a lens is focused on it.
     Focus([f32; 2]),
+    /// What is seen at this pixel becomes the point that orbits turn about, unless the camera has a `look_at` in view or a
+    /// point was chosen. Windows ask for it where a drag begins.
+    Pivot([f32; 2]),
     /// Moves the camera, its direction kept, so that what is seen at this pixel fills the picture; everything, when there is
     /// none, or nothing is seen there.
     Frame(Option<[f32; 2]>),
@@ -123,6 +126,9 @@ pub enum Setting {
     Exposure(f32),
     /// Factors on red, green and blue of the light of one group of lights, by name.
     Gain(String, [f32; 3]),
+    /// Whether the picture is shown denoised when nothing moves; at most 2^21 pixels. The film begins anew, for it keeps what
+    /// guides the filter, as `juggler render --denoise` does.
+    Denoise(bool),
     /// Another seed, another noise.
     Seed(u64),
     /// Threads that render.

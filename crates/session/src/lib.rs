@@ -13,9 +13,12 @@
 
 mod build;
 mod coarse;
+#[cfg(feature = "native")]
+mod denoising;
 pub mod draw;
 mod edit;
 mod frame;
+mod interest;
 pub mod pose;
 mod probe;
 #[cfg(feature = "native")]
@@ -28,6 +31,8 @@ mod shared;
 mod status;
 mod subject;
 #[cfg(feature = "native")]
+mod thumbnails;
+#[cfg(feature = "native")]
 mod watch;
 #[cfg(feature = "native")]
 mod worker;
@@ -35,7 +40,7 @@ mod worker;
 mod worlds;
 
 pub use build::{Build, MOST_PIXELS, Mistake, text_of};
-pub use coarse::{Pace, coarse_size};
+pub use coarse::{Pace, coarse_size, finer};
 pub use edit::{Channel, Edit, Fly, Orbit, Setting};
 pub use frame::Frame;
 pub use probe::Probe;
@@ -43,6 +48,8 @@ pub use probe::Probe;
 pub use session::{Options, SaveError, Session};
 pub use status::{Stage, Status};
 pub use subject::{Change, Subject};
+#[cfg(feature = "native")]
+pub use thumbnails::thumbnail;
 
 #[cfg(all(doctest, feature = "native"))]
 #[doc = include_str!("../README.md")]

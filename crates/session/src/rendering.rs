@@ -1,6 +1,7 @@
-//! How the worker makes pictures: coarse ones while somebody moves, then the film.
+//! How the worker makes pictures: coarse ones while somebody moves, finer passes over the whole picture when nobody does,
+//! then the film.
 
-use crate::coarse::coarse_size;
+use crate::coarse::{coarse_size, finer};
 use crate::draw::draw;
 use crate::screen::{self, Canvas, Toner};
 use crate::subject::Subject;
@@ -8,7 +9,7 @@ use crate::worker::Worker;
 use crate::{Channel, Frame, Stage};
 use juggler::Picture;
 use juggler::tracer::film::{Film, Layout, Rect};
-use juggler::tracer::render::{self, Control, Stop, Stopped};
+use juggler::tracer::render::{self, Control, Stop};
 use std::convert::Infallible;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -32,7 +33,7 @@ impl Worker {
         };
         let size = subject.picture().size();
         let coarseness = self.pace.coarseness(size, self.options.budget.as_secs_f64());
-        if !self.draw_by(&subject, coarseness) {
+        if !self.draw_by(&subject, coarseness, Stage::Moving) {
             // Too slow, and somebody goes on: the next one is coarser.
             return;
         }
@@ -42,21 +43,44 @@ impl Worker {
     }
 
     /// A frame of squares; `false` when it was cancelled.
-    fn draw_by(&mut self, subject: &Subject, coarseness: u32) -> bool {
+    fn draw_by(&mut self, subject: &Subject, coarseness: u32, stage: Stage) -> bool {
         let picture = subject.picture();
         let size = coarse_size(picture.size(), coarseness);
         let (control, began) = (Control::default(), Instant::now());
         // What is ready soon is not disturbed.
         let patience = if self.moved { self.options.budget * 2 } else { Duration::ZERO };
-        let (toner, gains, mut drawn) = (self.toner_of(picture), subject.gains(), Err(Stopped));
-        let (shared, channel, scheduler) = (&self.shared, self.status.channel, self.scheduler);
+        let (toner, gains) = (self.toner_of(picture), subject.gains());
+        let (channel, scheduler) = (self.status.channel, self.scheduler);
+        let drawn = self.run_unless_called(patience, &control, || {
+            let draft = draw(picture, size, channel, &gains, scheduler, &control).ok()?;
+            let rgba = toner.picture(&draft.pixels);
+            Some((draft, rgba))
+        });
+        let seconds = began.elapsed().as_secs_f64();
+        self.pace.learn(control.samples() as f64, seconds);
+        let Some((draft, rgba)) = drawn else { return false };
+        self.measure(&control, seconds, stage);
+        (self.draft, self.toner, self.canvas, self.retoned) = (Arc::new(draft), toner, None, false);
+        (self.status.stage, self.status.coarseness) = (stage, coarseness);
+        (self.status.samples, self.status.noise, self.status.hash) = (0.0, None, None);
+        (self.status.clamped, self.status.denoised) = (None, false);
+        let frame = self.frame(size, rgba, if coarseness == 1 { 1.0 } else { 0.0 });
+        self.publish(Some(frame));
+        true
+    }
+
+    /// Runs `work` on the pool. When something else is to be done, `control` is cancelled, though not before `patience` is over.
+    pub fn run_unless_called<T: Send>(
+        &self,
+        patience: Duration,
+        control: &Control,
+        work: impl FnOnce() -> Option<T> + Send,
+    ) -> Option<T> {
+        let (shared, mut result) = (&self.shared, None);
         shared.desk().done = false;
         self.pool.in_place_scope(|scope| {
             scope.spawn(|_| {
-                drawn = draw(picture, size, channel, &gains, scheduler, &control).map(|draft| {
-                    let rgba = toner.picture(&draft.pixels);
-                    (draft, rgba)
-                });
+                result = work();
                 shared.tell(|desk| desk.done = true);
             });
             shared.rest(Some(patience), |desk| desk.done);
@@ -65,17 +89,7 @@ impl Worker {
                 control.cancel();
             }
         });
-        let seconds = began.elapsed().as_secs_f64();
-        self.pace.learn(control.samples() as f64, seconds);
-        let Ok((draft, rgba)) = drawn else { return false };
-        self.measure(&control, seconds);
-        (self.draft, self.toner, self.canvas, self.retoned) = (Arc::new(draft), toner, None, false);
-        (self.status.stage, self.status.coarseness) = (Stage::Moving, coarseness);
-        (self.status.samples, self.status.noise, self.status.hash) = (0.0, None, None);
-        self.status.clamped = None;
-        let frame = self.frame(size, rgba, if coarseness == 1 { 1.0 } else { 0.0 });
-        self.publish(Some(frame));
-        true
+        result
     }
 
     fn frame(&self, [width, height]: [u32; 2], rgba: Vec<u8>, samples: f32) -> Frame {
@@ -83,11 +97,11 @@ impl Worker {
         Frame { number: 0, revision, width, height, rgba, size: self.status.size, samples }
     }
 
-    fn measure(&mut self, control: &Control, seconds: f64) {
+    fn measure(&mut self, control: &Control, seconds: f64, stage: Stage) {
         self.status.rays_per_second = (control.rays().total() as f64 / seconds.max(1e-9)) as f32;
         let since = self.drawn.elapsed();
         self.drawn = Instant::now();
-        if since < MOTION {
+        if since < MOTION && stage == Stage::Moving {
             let (now, before) = ((1.0 / since.as_secs_f64().max(1e-6)) as f32, self.status.frames_per_second);
             self.status.frames_per_second = if before > 0.0 { before + (now - before) * NEWEST } else { now };
         }
@@ -146,6 +160,13 @@ impl Worker {
         let Some(subject) = self.subject.clone() else { return };
         let (size, wanted, toner) = (self.status.size, self.status.samples_wanted, &self.toner);
         let gains = subject.gains();
+        if let Some(pixels) = self.denoised_pixels(&subject).filter(|_| self.status.channel == Channel::Color) {
+            let rgba = toner.picture(&pixels);
+            self.status.denoised = true;
+            let frame = self.frame(size, rgba, samples);
+            return self.publish(Some(frame));
+        }
+        self.status.denoised = false;
         let canvas = self.canvas.get_or_insert_with(|| Canvas::new(&self.draft, size, toner));
         // A whole picture through the pixels' centres looks better than one through one place of each.
         let least = if self.draft.size == size { wanted.min(4) } else { 1 };
@@ -163,20 +184,29 @@ impl Worker {
     /// Makes the picture better until something else is to be done; `false` when it cannot get better.
     pub fn refine(&mut self) -> bool {
         let Some(subject) = self.subject.clone() else { return false };
-        if !self.status.channel.is_light() && self.draft.size != subject.picture().size() {
-            return self.draw_by(&subject, 1) || self.shared.desk().calls();
+        let linger = LINGER.saturating_sub(self.drawn.elapsed());
+        if !linger.is_zero() && self.status.stage == Stage::Moving {
+            self.shared.rest(Some(linger), |desk| desk.calls());
+        }
+        // Finer passes over the whole picture, as long as no samples are there to be shown.
+        let has_samples = self.film.as_ref().is_some_and(|film| film.samples() > 0);
+        if (!self.status.channel.is_light() || !has_samples)
+            && let Some(step) = finer(self.draft.size, subject.picture().size())
+        {
+            return self.draw_by(&subject, step, Stage::Refining) || self.shared.desk().calls();
         }
         if self.film.is_none() {
             self.refilm();
         }
         let Some(film) = self.film.clone() else { return false };
-        if render::is_finished(&film, Stop::Evenly) {
+        let finished = render::is_finished(&film, Stop::Evenly);
+        if self.denoises(&subject, &film, finished) {
+            self.denoise(&subject, &film);
+            return true;
+        }
+        if finished {
             self.finish(&subject, &film);
             return false;
-        }
-        let linger = LINGER.saturating_sub(self.drawn.elapsed());
-        if !linger.is_zero() && self.status.stage == Stage::Moving {
-            self.shared.rest(Some(linger), |desk| desk.calls());
         }
         let control = Control::default();
         {
@@ -187,12 +217,14 @@ impl Worker {
             desk.done = false;
         }
         (self.status.stage, self.status.coarseness) = (Stage::Refining, 1);
-        self.expose(subject.picture(), &film, &control);
+        self.expose(&subject, &film, &control);
         true
     }
 
-    /// Exposes the film and shows it from time to time.
-    fn expose(&mut self, picture: &Picture, film: &Film, control: &Control) {
+    /// Exposes the film and shows it from time to time, until it is finished, is to be denoised, or something else is to be
+    /// done.
+    fn expose(&mut self, subject: &Subject, film: &Film, control: &Control) {
+        let picture = subject.picture();
         let (shared, pool) = (Arc::clone(&self.shared), Arc::clone(&self.pool));
         let (began, mut interval) = (Instant::now(), FIRST_SHOW);
         pool.in_place_scope(|scope| {
@@ -211,6 +243,10 @@ impl Worker {
                     break;
                 }
                 self.tell_of(picture, film, control, began);
+                if self.denoises(subject, film, false) {
+                    control.cancel();
+                    break;
+                }
                 interval = (interval * 3 / 2).min(LAST_SHOW);
             }
         });

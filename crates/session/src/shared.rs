@@ -57,6 +57,8 @@ pub struct Shown {
     pub film: Option<Arc<Film>>,
     /// The picture before there are samples.
     pub draft: Arc<Draft>,
+    /// The picture without noise, which is what is shown where there is one.
+    pub denoised: Option<Arc<[Rgb]>>,
 }
 
 impl Shown {
@@ -65,8 +67,12 @@ impl Shown {
         self.subject.picture()
     }
 
-    /// Hands the picture's rows to `rows`, from the top; where there are no samples yet, those of the draft.
+    /// Hands the picture's rows to `rows`, from the top: denoised where it is shown so; where there are no samples yet, those
+    /// of the draft.
     pub fn develop<E>(&self, mut rows: impl FnMut(&[Rgb]) -> Result<(), E>) -> Result<(), E> {
+        if let Some(pixels) = &self.denoised {
+            return pixels.chunks(self.picture().size()[0].max(1) as usize).try_for_each(rows);
+        }
         let (size, draft, gains) = (self.picture().size(), &self.draft, self.subject.gains());
         let row = |y: u32| -> Vec<Rgb> { (0..size[0]).map(|x| draft.at([x, y], size)).collect() };
         let Some(film) = &self.film else { return (0..size[1]).try_for_each(|y| rows(&row(y))) };

@@ -61,6 +61,10 @@ pub struct Status {
     pub integrator: String,
     /// Its longest path, when it has one.
     pub max_depth: Option<u32>,
+    /// Whether the picture is to be shown denoised.
+    pub denoise: bool,
+    /// Whether what is shown is denoised.
+    pub denoised: bool,
     /// Sampler by name.
     pub sampler: String,
     /// Tone curve by name.
@@ -85,6 +89,6 @@ pub struct Status {
     pub frame_rate: f64,
     /// Whether it plays.
     pub playing: bool,
-    /// When finished: the hash of the film, which is that of `juggler render`.
+    /// When finished: the hash of the film, which is that of `juggler render`, with `--denoise` where [`Self::denoise`] is on.
     pub hash: Option<String>,
 }

@@ -1,9 +1,10 @@
 //! What is looked at: a scene, what people changed of it, and the picture that follows. No threads, no clocks: all that
 //! takes long is in [`Build::run`], which whoever holds the subject runs where it likes.
 
-use crate::build::{Build, MOST_PIXELS, Task, text_of};
+use crate::build::{Build, MOST_DENOISED, MOST_PIXELS, Task, pixels_of, text_of};
 use crate::{Edit, Setting, Status, pose};
-use juggler::math::{Aabb, Ray, Rgb, Vec2, Vec3};
+use juggler::denoise::Denoiser;
+use juggler::math::{Rgb, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
 use juggler::scene::kind::name_of;
@@ -11,7 +12,6 @@ use juggler::scene::{Scene, camera_json, with_camera};
 use juggler::tracer::camera::AnyCamera;
 use juggler::tracer::film::Tile;
 use juggler::tracer::integrator::AnyIntegrator;
-use juggler::tracer::world::Vertex;
 use juggler::{MOST_GAIN, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -53,6 +53,14 @@ pub enum Change {
     View,
     /// A world must be built first.
     Build(Box<Build>),
+}
+
+fn can_be_denoised(size: [u32; 2]) -> Result<(), String> {
+    if pixels_of(size) <= MOST_DENOISED {
+        return Ok(());
+    }
+    let [width, height] = size;
+    Err(format!("error: {width} x {height} are more pixels than the limit of {MOST_DENOISED} for the denoised preview"))
 }
 
 fn rebuild(build: Build) -> Change {
@@ -109,20 +117,9 @@ impl Subject {
     /// that are not about the picture are ignored.
     pub fn apply(&mut self, edit: &Edit) -> Result<Change, String> {
         match edit {
-            Edit::Scene(name) => Ok(rebuild(Build { size: self.size, ..Build::open(name, self.settings.size) })),
+            Edit::Scene(name) => Ok(rebuild(self.open(name))),
             Edit::Reload => Ok(rebuild(self.build(Task::Reload(Arc::clone(&self.file))))),
-            Edit::Reset => {
-                let settings = Settings { size: self.size, ..Settings::default() };
-                let build = self.build(Task::Have(Arc::clone(&self.file)));
-                Ok(rebuild(Build {
-                    values: Vec::new(),
-                    frame: 0.0,
-                    settings,
-                    camera: None,
-                    gains: Vec::new(),
-                    ..build
-                }))
-            }
+            Edit::Reset => Ok(rebuild(self.reset())),
             Edit::Set { path, value } => {
                 let mut build = self.build(Task::Have(Arc::clone(&self.file)));
                 build.values.retain(|(other, _)| other != path);
@@ -137,6 +134,10 @@ impl Subject {
                 Ok(rebuild(Build { frame, ..self.build(Task::Have(Arc::clone(&self.file))) }))
             }
             Edit::Setting(setting) => self.set(setting),
+            Edit::Pivot(pixel) => {
+                self.pivot(*pixel);
+                Ok(Change::Nothing)
+            }
             Edit::Fly(_) | Edit::Orbit(_) | Edit::Zoom(_) | Edit::Focus(_) | Edit::Frame(_) => self.steer(edit),
             Edit::Camera(name) => self.choose(name),
             Edit::Look(camera) => {
@@ -166,6 +167,20 @@ impl Subject {
         self.file.paths()
     }
 
+    /// Another scene, looked at in the same way.
+    fn open(&self, name: &str) -> Build {
+        let mut build = Build { size: self.size, ..Build::open(name, self.settings.size) };
+        build.settings.denoiser = self.settings.denoiser;
+        build
+    }
+
+    /// The scene as its file has it, looked at in the same way.
+    fn reset(&self) -> Build {
+        let settings = Settings { size: self.size, denoiser: self.settings.denoiser, ..Settings::default() };
+        let (values, gains, camera) = (Vec::new(), Vec::new(), None);
+        Build { values, frame: 0.0, settings, camera, gains, ..self.build(Task::Have(Arc::clone(&self.file))) }
+    }
+
     fn build(&self, task: Task) -> Build {
         Build {
             task,
@@ -177,6 +192,7 @@ impl Subject {
             camera: self.camera.clone(),
             kept: self.kept.clone(),
             gains: self.gains.clone(),
+            interest: self.held.then_some(self.interest),
             before: Some((Arc::clone(&self.scene), Arc::clone(&self.picture))),
         }
     }
@@ -184,10 +200,15 @@ impl Subject {
     fn set(&mut self, setting: &Setting) -> Result<Change, String> {
         let mut settings = self.settings.clone();
         match setting {
-            Setting::Size([width, height]) if u64::from(*width) * u64::from(*height) > MOST_PIXELS => {
+            Setting::Size(size) if pixels_of(*size) > MOST_PIXELS => {
+                let [width, height] = size;
                 return Err(format!(
                     "error: {width} x {height} are more pixels than the limit of {MOST_PIXELS} for looking"
                 ));
+            }
+            Setting::Size(size) if self.settings.denoiser.is_some() => {
+                can_be_denoised(*size)?;
+                settings.size = Some(*size);
             }
             Setting::Size(size) => settings.size = Some(*size),
             Setting::Samples(samples) => settings.samples = Some(*samples),
@@ -198,6 +219,7 @@ impl Subject {
             Setting::Exposure(stops) => settings.exposure_stops = Some(*stops),
             Setting::Seed(seed) => settings.seed = Some(*seed),
             Setting::Gain(group, factors) => return self.relight(group, *factors),
+            Setting::Denoise(on) => return self.denoise(*on),
             Setting::Threads(_) | Setting::Scheduler(_) => return Ok(Change::Nothing),
         }
         if matches!(setting, Setting::Integrator(name) if name != "classic") {
@@ -209,6 +231,19 @@ impl Subject {
         self.see(View { camera: self.picture.view().camera, render, tone })?;
         self.settings = settings;
         Ok(Change::View)
+    }
+
+    /// The film keeps what guides the denoiser, or keeps it no more: it begins anew.
+    fn denoise(&self, on: bool) -> Result<Change, String> {
+        let denoiser = on.then_some(Denoiser::Own);
+        if self.settings.denoiser == denoiser {
+            return Ok(Change::Nothing);
+        }
+        if on {
+            can_be_denoised(self.picture.size())?;
+        }
+        let settings = Settings { denoiser, ..self.settings.clone() };
+        Ok(rebuild(Build { settings, ..self.build(Task::Have(Arc::clone(&self.file))) }))
     }
 
     fn relight(&mut self, group: &str, factors: [f32; 3]) -> Result<Change, String> {
@@ -238,6 +273,12 @@ impl Subject {
         if gains.is_empty() { tile.means() } else { self.picture.layers().relit(tile, gains) }
     }
 
+    /// Whether the picture is to be shown denoised, and can be: with all lights as they are.
+    #[cfg(feature = "native")]
+    pub(crate) fn is_denoised(&self) -> bool {
+        self.picture.layers().denoiser().is_some() && self.gains().is_empty()
+    }
+
     fn see(&mut self, view: View) -> Result<(), String> {
         self.picture = Arc::new(self.picture.seen(view).map_err(|error| text_of(&error))?);
         Ok(())
@@ -249,9 +290,9 @@ impl Subject {
         self.see(View { camera: camera.clone(), ..self.picture.view() })?;
         self.camera = Some(camera);
         if fresh {
-            (self.upward, self.held) = (upward, false);
-        }
-        if !self.held {
+            self.upward = upward;
+            self.begin_interest();
+        } else if !self.held {
             self.look_for_interest();
         }
         Ok(Change::View)
@@ -297,32 +338,10 @@ impl Subject {
         };
         let Some(moved) = moved.filter(|moved| *moved != camera) else { return Ok(Change::Nothing) };
         let change = self.look(moved, false)?;
-        if matches!(edit, Edit::Fly(_)) && self.held && !self.is_ahead(self.interest) {
-            self.held = false;
-            self.look_for_interest();
+        if matches!(edit, Edit::Fly(_)) {
+            self.lose_interest();
         }
         Ok(change)
-    }
-
-    fn is_ahead(&self, point: Vec3) -> bool {
-        let axes = self.picture.view().camera.axes();
-        axes.is_ok_and(|axes| (point - axes.eye).dot(axes.forward) > 0.0)
-    }
-
-    /// The point and the vertex that is seen at a place of the film, in pixels.
-    pub fn seen_at(&self, pixel: [f32; 2]) -> Option<(Vec3, Vertex)> {
-        let mut ray = self.ray(pixel);
-        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
-            return None;
-        }
-        let world = self.picture.world();
-        let hit = world.closest(&mut ray);
-        hit.is_some().then(|| world.vertex(&ray, &hit)).map(|vertex| (vertex.surface.point, vertex))
-    }
-
-    /// The ray through a place of the film, in pixels, and the middle of the lens.
-    pub fn ray(&self, pixel: [f32; 2]) -> Ray {
-        self.picture.job().camera.at(0.5).ray(Vec2::from_array(pixel), Vec2::splat(0.5), 0.5)
     }
 
     /// Writes down how things stand.
@@ -336,6 +355,7 @@ impl Subject {
             AnyIntegrator::Classic(classic) => Some(classic.max_depth),
             _ => None,
         };
+        status.denoise = self.settings.denoiser.is_some();
         status.sampler = name_of(&render.sampler);
         status.tone = name_of(&tone.curve);
         status.exposure = tone.exposure_stops;
@@ -349,28 +369,5 @@ impl Subject {
         let animation = self.animation();
         status.frames = animation.map_or(0, |animation| animation.frames);
         status.frame_rate = animation.map_or(0.0, |animation| animation.frames_per_second);
-    }
-
-    fn to_frame(&self, pixel: Option<[f32; 2]>) -> Aabb {
-        let world = self.picture.world();
-        let object = pixel.and_then(|pixel| self.seen_at(pixel)).map(|(_, vertex)| world.shape_bounds(vertex.object));
-        let all = world.bounds();
-        let all = if all.is_empty() { Aabb { min: -Vec3::ONE, max: Vec3::ONE } } else { all };
-        object.filter(|bounds| !bounds.is_empty()).unwrap_or(all)
-    }
-
-    /// What is seen in the picture's middle, or as far ahead as the middle of everything.
-    pub(crate) fn look_for_interest(&mut self) {
-        let middle = self.picture.size().map(|edge| edge as f32 * 0.5);
-        if let Some((point, _)) = self.seen_at(middle) {
-            self.interest = point;
-            return;
-        }
-        let Ok(axes) = self.picture.view().camera.axes() else { return };
-        let bounds = self.picture.world().bounds();
-        let center = if bounds.is_empty() { Vec3::ZERO } else { bounds.center() };
-        let ahead = (center - axes.eye).dot(axes.forward);
-        let ahead = if ahead > 0.0 { ahead } else { self.extent() };
-        self.interest = axes.eye + axes.forward * ahead;
     }
 }

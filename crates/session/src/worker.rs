@@ -2,6 +2,7 @@
 
 use crate::build::Build;
 use crate::coarse::Pace;
+use crate::denoising::Denoising;
 use crate::screen::{Canvas, Draft, Toner};
 use crate::session::Options;
 use crate::shared::{Shared, Shown};
@@ -33,6 +34,8 @@ pub struct Worker {
     /// Samples of the picture so far.
     pub film: Option<Arc<Film>>,
     pub draft: Arc<Draft>,
+    /// The film's picture without noise.
+    pub denoising: Denoising,
     pub canvas: Option<Canvas>,
     pub toner: Toner,
     pub region: Option<Rect>,
@@ -80,6 +83,7 @@ impl Worker {
             subject: None,
             film: None,
             draft: Arc::default(),
+            denoising: Denoising::default(),
             canvas: None,
             toner: Toner::new(&Tone::default()),
             region: None,
@@ -130,9 +134,10 @@ impl Worker {
     /// Shows how things stand, with a new frame or without.
     pub fn publish(&mut self, frame: Option<Frame>) {
         let shown = self.subject.clone().map(|subject| Shown {
-            subject,
             film: self.film.clone(),
             draft: Arc::clone(&self.draft),
+            denoised: self.denoised_pixels(&subject),
+            subject,
         });
         self.shared.publish(frame, self.status.clone(), shown);
     }
@@ -241,7 +246,7 @@ impl Worker {
             self.status.samples_wanted = picture.samples();
             self.refilm();
         } else {
-            (self.film, self.moved) = (None, true);
+            (self.film, self.moved, self.denoising) = (None, true, Denoising::default());
         }
     }
 

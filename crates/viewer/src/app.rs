@@ -20,6 +20,8 @@ use std::time::Duration;
 
 /// How often the camera is moved while a key is held.
 const STEP: Duration = Duration::from_millis(15);
+/// How often it is looked whether a notice is to go away.
+const NOTICE: Duration = Duration::from_millis(500);
 /// What the exposure keys add, stops.
 const STOPS: f32 = 0.25;
 
@@ -116,6 +118,7 @@ impl Viewer {
             }
             Command::Close => {
                 (self.shows_help, self.probing) = (false, Probing::Off);
+                self.saving.forget();
                 self.chooser.set_open(false);
             }
             Command::NextCamera => {
@@ -167,6 +170,11 @@ impl Viewer {
         } else if !self.shows_panel {
             overlay::line(context, self.area, status);
         }
+        let now = context.input(|input| input.time);
+        if let Some(notice) = self.saving.notice(now) {
+            overlay::notice(context, self.area, &notice);
+            context.request_repaint_after(NOTICE);
+        }
         edits.extend(self.chooser.show(context, &status.scene).map(Edit::Scene));
         if self.shows_help && help::show(context) {
             self.shows_help = false;
@@ -198,7 +206,7 @@ impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         let status: Arc<Status> = self.session.status();
-        self.saving.look();
+        self.saving.look(context.input(|input| input.time));
         let mut edits = Vec::new();
         let mut commands = self.keys(&context, &status, &mut edits);
         self.panels(ui, &status, &mut edits, &mut commands);
@@ -247,6 +255,7 @@ fn asked(command: Command, status: &Status) -> Option<Edit> {
         Command::Darker => Edit::Setting(Setting::Exposure(status.exposure - STOPS)),
         Command::Channel(place) => Edit::Show(*Channel::ALL.get(usize::from(place))?),
         Command::WholePicture => Edit::Region(None),
+        Command::Denoise => Edit::Setting(Setting::Denoise(!status.denoise)),
         Command::Reload => Edit::Reload,
         Command::Reset => Edit::Reset,
         _ => return None,

@@ -32,9 +32,6 @@ impl Chooser {
     pub fn set_open(&mut self, open: bool) {
         (self.open, self.just_opened) = (open, open);
         self.text.clear();
-        if !open {
-            self.thumbnails.rest();
-        }
     }
 
     /// Shows it when it is open; the scene that was chosen.
@@ -42,7 +39,6 @@ impl Chooser {
         if !self.open {
             return None;
         }
-        self.thumbnails.make(context);
         let room = context.content_rect().shrink(32.0);
         let columns = ((room.width() - 40.0) / (CARD.x + 10.0)).floor().clamp(1.0, 5.0) as usize;
         let frame = style::floating().fill(style::SURFACE).inner_margin(16);
@@ -75,7 +71,7 @@ impl Chooser {
         if entered { chosen(&self.text) } else { None }
     }
 
-    fn cards(&self, ui: &mut Ui, columns: usize, current: &str) -> Option<String> {
+    fn cards(&mut self, ui: &mut Ui, columns: usize, current: &str) -> Option<String> {
         let mut clicked = None;
         ui.spacing_mut().item_spacing = vec2(10.0, 10.0);
         let fitting: Vec<&BuiltIn> = fitting(&self.text).collect();
@@ -92,13 +88,13 @@ impl Chooser {
     }
 
     /// One scene; whether it was clicked.
-    fn card(&self, ui: &mut Ui, scene: &BuiltIn, current: bool) -> bool {
+    fn card(&mut self, ui: &mut Ui, scene: &BuiltIn, current: bool) -> bool {
         let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, NAME), Sense::click());
         if ui.is_rect_visible(rect) {
             let picture = Rect::from_min_size(rect.min, CARD);
             let painter = ui.painter();
             painter.rect_filled(picture, 4, style::BACKGROUND);
-            if let Some(texture) = self.thumbnails.of(scene.name) {
+            if let Some(texture) = self.thumbnails.of(scene.name, ui.ctx()) {
                 painter.image(texture.id(), picture, cover(texture.size_vec2()), Color32::WHITE);
             }
             let color = if response.hovered() || current { style::ACCENT } else { style::EDGE };

@@ -47,6 +47,7 @@ pub enum Command {
     Darker,
     Channel(u8),
     Probe,
+    Denoise,
     WholePicture,
     Magnify,
     Panel,
@@ -115,7 +116,7 @@ pub const GROUPS: &[Group] = &[
     Group {
         name: "Camera",
         gestures: &[
-            ("drag", "look around (fly), turn the scene (orbit)"),
+            ("drag", "look around (fly), turn the scene about the point to orbit (orbit)"),
             ("Shift drag, middle drag", "move sideways and up"),
             ("wheel", "zoom (fly), come closer (orbit)"),
             ("click", "set the point to orbit, and the focus of a lens"),
@@ -156,6 +157,7 @@ pub const GROUPS: &[Group] = &[
             press(&[Key::T], Command::WholePicture, "refine the whole picture"),
             press(&[Key::Z], Command::Magnify, "fit the window, or 100 %"),
             press(&[Key::P], Command::Probe, "probe the pixel: follow, pin, off"),
+            press(&[Key::N], Command::Denoise, "denoise, when nothing moves"),
             press(&[Key::OpenBracket], Command::Darker, "exposure"),
             press(&[Key::CloseBracket], Command::Brighter, "exposure"),
             press(&[Key::Num1], Command::Channel(0), CHANNELS),

@@ -21,6 +21,25 @@ pub fn mistake(context: &Context, area: Rect, text: &str) {
         });
 }
 
+/// What was done, or what went wrong, in the middle of the upper edge.
+pub fn notice(context: &Context, area: Rect, notice: &Result<String, String>) {
+    egui::Area::new(Id::unique("notice"))
+        .order(egui::Order::Foreground)
+        .interactable(false)
+        .pivot(Align2::CENTER_TOP)
+        .fixed_pos(area.center_top() + vec2(0.0, 12.0))
+        .show(context, |ui| {
+            let (text, color) = match notice {
+                Ok(text) => (text, style::TEXT),
+                Err(text) => (text, style::WRONG),
+            };
+            style::floating().show(ui, |ui| {
+                ui.set_max_width((area.width() - 48.0).max(120.0));
+                ui.label(RichText::new(text).color(color));
+            });
+        });
+}
+
 /// One line at the lower left.
 pub fn line(context: &Context, area: Rect, status: &Status) {
     egui::Area::new(Id::unique("line"))
@@ -40,8 +59,12 @@ pub fn summary(status: &Status) -> String {
     match status.stage {
         Stage::Loading => parts.push("loading".to_owned()),
         Stage::Moving => parts.push(moving(status)),
+        Stage::Refining if status.coarseness > 1 => parts.push(format!("1/{} size", status.coarseness)),
         Stage::Refining => parts.push(format!("{} of {} samples", status.samples.floor(), status.samples_wanted)),
         Stage::Finished => parts.push(format!("{} samples, finished", status.samples.floor())),
+    }
+    if status.denoised {
+        parts.push("denoised".to_owned());
     }
     if let Some(noise) = status.noise {
         parts.push(format!("noise {:.1} %", noise * 100.0));
@@ -77,12 +100,16 @@ mod tests {
     fn sums_up() {
         let mut status = Status { stage: Stage::Moving, frames_per_second: 51.7, coarseness: 2, ..Status::default() };
         assert_eq!(summary(&status), "52 frames/s, 1/2 size");
-        (status.stage, status.samples, status.samples_wanted) = (Stage::Refining, 12.5, 64);
+        (status.stage, status.samples, status.samples_wanted, status.coarseness) = (Stage::Refining, 12.5, 64, 1);
         (status.noise, status.rays_per_second) = (Some(0.0123), 12.34e6);
         assert_eq!(summary(&status), "12 of 64 samples · noise 1.2 % · 12.3 Mrays/s");
         status.stage = Stage::Finished;
         assert_eq!(summary(&status), "12 samples, finished · noise 1.2 %");
-        status.clamped = Some(0.0346);
+        (status.stage, status.coarseness) = (Stage::Refining, 4);
+        assert_eq!(summary(&status), "1/4 size · noise 1.2 % · 12.3 Mrays/s");
+        (status.stage, status.denoised) = (Stage::Finished, true);
+        assert_eq!(summary(&status), "12 samples, finished · denoised · noise 1.2 %");
+        (status.denoised, status.clamped) = (false, Some(0.0346));
         assert_eq!(summary(&status), "12 samples, finished · noise 1.2 % · clamping removed 3.5 %");
     }
 }

@@ -7,6 +7,7 @@ use crate::overlay;
 use crate::saving::Saving;
 use crate::style;
 use crate::title::short;
+use eframe::egui::scroll_area::ScrollAreaOutput;
 use eframe::egui::{
     self, Button, CollapsingHeader, ComboBox, Grid, ProgressBar, RichText, ScrollArea, Slider, TextEdit, Ui, vec2,
 };
@@ -19,6 +20,8 @@ use std::collections::BTreeMap;
 
 /// Width of the panel.
 const WIDTH: f32 = 316.0;
+/// Channels beside each other.
+const CHANNEL_COLUMNS: usize = 4;
 /// Sizes of the picture that are offered.
 const SIZES: [[u32; 2]; 6] = [[320, 240], [640, 480], [1280, 720], [1920, 1080], [2560, 1440], [3840, 2160]];
 /// The schedulers, and what they do.
@@ -78,18 +81,22 @@ impl Panel {
         egui::Panel::right("panel").frame(frame).resizable(false).exact_size(WIDTH).show(ui, |ui| {
             head(ui, around);
             ui.separator();
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                section(ui, "Camera", |ui| self.camera(ui, around));
-                section(ui, "Picture", |ui| self.picture(ui, around));
-                section(ui, "Colour", |ui| self.colour(ui, around));
-                if !around.status.light_groups.is_empty() {
-                    section(ui, "Lights", |ui| lights::show(ui, &around.status.light_groups, around.edits));
-                }
-                section(ui, "Show", |ui| channels(ui, around));
-                section(ui, "Threads", |ui| self.threads(ui, around));
-                section(ui, "Save", |ui| save(ui, around));
-            });
+            self.sections(ui, around);
         });
+    }
+
+    /// All that can be set; what is of use to few is folded at first.
+    fn sections(&mut self, ui: &mut Ui, around: &mut Around<'_>) -> ScrollAreaOutput<()> {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            section(ui, "Camera", true, |ui| self.camera(ui, around));
+            section(ui, "Picture", true, |ui| self.picture(ui, around));
+            if !around.status.light_groups.is_empty() {
+                section(ui, "Lights", true, |ui| lights::show(ui, &around.status.light_groups, around.edits));
+            }
+            section(ui, "Show", true, |ui| channels(ui, around));
+            section(ui, "Save", true, |ui| save(ui, around));
+            section(ui, "Machine", false, |ui| self.machine(ui, around));
+        })
     }
 
     fn camera(&mut self, ui: &mut Ui, around: &mut Around<'_>) {
@@ -136,12 +143,19 @@ impl Panel {
             let depth = row(ui, "max depth", |ui| number(ui, depth, 0..=64, false));
             depth.map(Setting::MaxDepth).map(&mut set);
         }
-        if status.region.is_some() {
-            row(ui, "region", |ui| button(ui, around, "Whole picture", Command::WholePicture));
-        }
+        self.color(ui, around);
+        row(ui, "at rest", |ui| {
+            let mut denoise = status.denoise;
+            if ui.checkbox(&mut denoise, "denoise").on_hover_text("key N").changed() {
+                around.commands.push(Command::Denoise);
+            }
+            if status.region.is_some() {
+                button(ui, around, "Whole picture", Command::WholePicture);
+            }
+        });
     }
 
-    fn colour(&self, ui: &mut Ui, around: &mut Around<'_>) {
+    fn color(&self, ui: &mut Ui, around: &mut Around<'_>) {
         let mut stops = around.status.exposure;
         let slider = Slider::new(&mut stops, -8.0..=8.0).fixed_decimals(2);
         if row(ui, "exposure", |ui| ui.add(slider).changed()) {
@@ -151,7 +165,7 @@ impl Panel {
         around.edits.extend(curve.map(|curve| Edit::Setting(Setting::Tone(curve))));
     }
 
-    fn threads(&self, ui: &mut Ui, around: &mut Around<'_>) {
+    fn machine(&self, ui: &mut Ui, around: &mut Around<'_>) {
         let status = around.status;
         let most = self.cores.max(status.threads) as u32;
         if let Some(threads) = row(ui, "threads", |ui| number(ui, status.threads as u32, 1..=most, false)) {
@@ -189,11 +203,11 @@ fn head(ui: &mut Ui, around: &mut Around<'_>) {
     ui.label(RichText::new(overlay::summary(status)).color(style::QUIET));
 }
 
-fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+fn section(ui: &mut Ui, name: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     let head = RichText::new(name).color(style::ACCENT);
-    CollapsingHeader::new(head).id_salt(name).default_open(true).show_unindented(ui, |ui| {
+    CollapsingHeader::new(head).id_salt(name).default_open(open).show_unindented(ui, |ui| {
         contents(ui);
-        ui.add_space(6.0);
+        ui.add_space(4.0);
     });
 }
 
@@ -248,14 +262,15 @@ fn number(ui: &mut Ui, current: u32, range: std::ops::RangeInclusive<u32>, logar
 }
 
 fn channels(ui: &mut Ui, around: &mut Around<'_>) {
-    Grid::new("channels").num_columns(3).spacing(vec2(4.0, 4.0)).show(ui, |ui| {
+    ui.spacing_mut().button_padding.x = 3.0;
+    Grid::new("channels").num_columns(CHANNEL_COLUMNS).spacing(vec2(4.0, 4.0)).show(ui, |ui| {
         for (place, channel) in Channel::ALL.into_iter().enumerate() {
             let words = Button::selectable(channel == around.status.channel, channel_name(channel));
             let hint = format!("key {}", place + 1);
-            if ui.add(words.min_size(vec2(90.0, 22.0))).on_hover_text(hint).clicked() {
+            if ui.add(words.min_size(vec2(68.0, 22.0))).on_hover_text(hint).clicked() {
                 around.edits.push(Edit::Show(channel));
             }
-            if place % 3 == 2 {
+            if (place + 1).is_multiple_of(CHANNEL_COLUMNS) {
                 ui.end_row();
             }
         }
@@ -284,11 +299,6 @@ fn save(ui: &mut Ui, around: &mut Around<'_>) {
             around.commands.push(Command::Save);
         }
     });
-    match &around.saving.said {
-        Some(Ok(file)) => drop(ui.label(RichText::new(format!("saved {file}")).color(style::QUIET))),
-        Some(Err(why)) => drop(ui.label(RichText::new(why).color(style::WRONG))),
-        None => {}
-    }
 }
 
 /// A name for a camera that no other has.
@@ -300,6 +310,43 @@ pub fn next_name(cameras: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// How many points of the panel's sections a window of this size does not show.
+    fn hidden(status: &Status, size: [f32; 2]) -> f32 {
+        let context = egui::Context::default();
+        style::apply(&context);
+        let (mut panel, mut controls, mut saving) = (Panel::default(), Controls::default(), Saving::default());
+        let mut hidden = 0.0;
+        // Sections are as large as they were in the pass before.
+        for _ in 0..3 {
+            let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size.into()));
+            let mut output = context.run_ui(egui::RawInput { screen_rect, ..egui::RawInput::default() }, |ui| {
+                let (mut edits, mut commands) = (Vec::new(), Vec::new());
+                let (edits, commands) = (&mut edits, &mut commands);
+                let mut around =
+                    Around { status, controls: &mut controls, saving: &mut saving, window: [1; 2], edits, commands };
+                let frame = egui::Frame::new().inner_margin(egui::Margin::symmetric(14, 12));
+                egui::Panel::right("panel").frame(frame).resizable(false).exact_size(WIDTH).show(ui, |ui| {
+                    head(ui, &mut around);
+                    ui.separator();
+                    let output = panel.sections(ui, &mut around);
+                    hidden = output.content_size.y - output.inner_rect.height();
+                });
+            });
+            output.textures_delta.clear();
+        }
+        hidden
+    }
+
+    #[test]
+    fn the_panel_fits_a_window_of_1280_by_800() {
+        let region = Some(juggler::tracer::film::Rect { x: 0, y: 0, width: 9, height: 9 });
+        let light_groups = vec![("key".to_owned(), [1.0; 3]), ("rest".to_owned(), [1.0; 3])];
+        let cameras = vec!["main".to_owned(), "top".to_owned()];
+        let status = Status { max_depth: Some(5), region, light_groups, cameras, ..Status::default() };
+        assert!(hidden(&status, [1280.0, 800.0]) <= 0.0, "{}", hidden(&status, [1280.0, 800.0]));
+        assert!(hidden(&status, [1280.0, 500.0]) > 0.0, "it is measured");
+    }
 
     #[test]
     fn bookmarks_have_names_of_their_own() {

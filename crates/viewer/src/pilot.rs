@@ -1,6 +1,6 @@
 //! The pointer over the picture: drags, clicks and the wheel.
 
-use crate::controls::Controls;
+use crate::controls::{Controls, Mode};
 use crate::keys::REGION;
 use crate::lens::Lens;
 use crate::picture::{Placement, View};
@@ -48,6 +48,10 @@ impl Pilot {
         if self.draft.from.is_some() {
             self.draw_up(response, placement, edits);
             return;
+        }
+        if response.drag_started_by(PointerButton::Primary) && !shift && self.controls.mode == Mode::Orbit {
+            let origin = ui.input(|input| input.pointer.press_origin());
+            edits.extend(origin.and_then(|at| placement.film(at)).map(Edit::Pivot));
         }
         let delta = response.drag_delta();
         let pixels = placement.pixels_per_point();

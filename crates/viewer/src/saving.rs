@@ -5,13 +5,18 @@ use juggler_session::Session;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
 
+/// Seconds for which a saved file is told.
+const TOLD: f64 = 5.0;
+
 /// A path to save to, and how the last attempt went.
 #[derive(Default)]
 pub struct Saving {
     /// What stands in the field; empty stands for [`Saving::path`]'s choice.
     pub text: String,
-    /// What to say of the last attempt.
-    pub said: Option<Result<String, String>>,
+    /// The file that was written, or why none was, and when in seconds.
+    said: Option<(Result<String, String>, f64)>,
+    /// The name of the file that is being written.
+    writing: String,
     work: Option<Receiver<Result<String, String>>>,
 }
 
@@ -35,29 +40,80 @@ impl Saving {
             return;
         }
         let (session, path) = (session.clone(), self.path(scene));
+        self.writing = path.display().to_string();
         let (sender, receiver) = channel();
         let write = move || {
-            let said = session.save(&path).map(|()| path.display().to_string()).map_err(|error| error.to_string());
+            let full = || std::path::absolute(&path).unwrap_or_else(|_| path.clone()).display().to_string();
+            let said = session.save(&path).map(|()| full()).map_err(|error| error.to_string());
             let _ = sender.send(said);
             wake();
         };
         match std::thread::Builder::new().name("save".into()).spawn(write) {
             Ok(_) => (self.work, self.said) = (Some(receiver), None),
-            Err(error) => self.said = Some(Err(error.to_string())),
+            Err(error) => self.said = Some((Err(error.to_string()), f64::INFINITY)),
         }
     }
 
-    /// Takes note of what was written.
-    pub fn look(&mut self) {
+    /// Takes note of what was written; `now` in seconds.
+    pub fn look(&mut self, now: f64) {
         if let Some(said) = self.work.as_ref().and_then(|work| work.try_recv().ok()) {
-            (self.said, self.work) = (Some(said), None);
+            (self.said, self.work) = (Some((said, now)), None);
         }
+    }
+
+    /// What is to be shown of it: the file that is being written; for some seconds the file that was, with its folder; or
+    /// what went wrong, until the next attempt or [`Self::forget`].
+    pub fn notice(&self, now: f64) -> Option<Result<String, String>> {
+        if self.is_busy() {
+            return Some(Ok(format!("saving {}", self.writing)));
+        }
+        match self.said.as_ref()? {
+            (Ok(file), at) => (now - at < TOLD).then(|| Ok(format!("saved {file}"))),
+            (Err(why), _) => Some(Err(format!("not saved: {why}"))),
+        }
+    }
+
+    /// Says no more of the last attempt.
+    pub fn forget(&mut self) {
+        self.said = None;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_saved_is_told_for_a_while_and_a_failure_until_it_is_seen() {
+        let mut saving = Saving::default();
+        assert_eq!(saving.notice(0.0), None);
+        saving.said = Some((Ok("/pictures/a.png".into()), 10.0));
+        assert_eq!(saving.notice(11.0), Some(Ok("saved /pictures/a.png".into())));
+        assert_eq!(saving.notice(10.0 + TOLD), None);
+        saving.said = Some((Err("no space".into()), 10.0));
+        assert_eq!(saving.notice(1000.0), Some(Err("not saved: no space".into())));
+        saving.forget();
+        assert_eq!(saving.notice(1000.0), None);
+    }
+
+    #[test]
+    fn the_file_that_is_written_is_named() {
+        let options = juggler_session::Options { size: Some([24, 18]), threads: 1, ..Default::default() };
+        let session = Session::open("one-sphere", options);
+        while session.status().stage != juggler_session::Stage::Finished {
+            session.wait(u64::MAX, session.status().number, std::time::Duration::from_millis(50));
+        }
+        let mut saving = Saving::default();
+        let file = std::env::temp_dir().join(format!("juggler-saving-{}.png", std::process::id()));
+        saving.text = file.display().to_string();
+        let (done, woken) = channel();
+        saving.start(&session, "one-sphere", move || done.send(()).unwrap());
+        assert_eq!(saving.notice(0.0), Some(Ok(format!("saving {}", file.display()))));
+        woken.recv().unwrap();
+        saving.look(3.0);
+        assert_eq!(saving.notice(3.5), Some(Ok(format!("saved {}", file.display()))));
+        std::fs::remove_file(file).unwrap();
+    }
 
     #[test]
     fn a_name_is_found() {

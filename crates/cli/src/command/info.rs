@@ -11,6 +11,7 @@ use crate::reproduce;
 use crate::source;
 use clap::Args;
 use juggler::film;
+use juggler::imaging::layered::{LayerName, layer_names};
 use juggler::imaging::{self, Facts, Format, regular};
 use juggler::math::Aabb;
 use juggler::scene::{Compiled, Illuminance, Scene, import};
@@ -55,6 +56,7 @@ impl Info {
 
     fn picture(&self, format: Format) -> Result<(), Failure> {
         let Facts { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
+        let layers = layer_names(Path::new(&self.scene))?;
         for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
             *text = reproduce::told_by(&self.scene, text);
         }
@@ -62,13 +64,16 @@ impl Info {
             let texts: Map<String, Value> = metadata.into_iter().map(|(key, text)| (key, text.into())).collect();
             let name = format.ending();
             let json = json!({
-                "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts
+                "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts,
+                "layers": layers.iter().map(|layer| json!({"name": layer.name, "channels": layer.channels})).collect::<Vec<_>>(),
             });
             return console::print(&json.to_string());
         }
         let texts = metadata.iter().map(|(key, text)| row(key, text));
-        let lines =
-            [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))].into_iter().chain(texts);
+        let keys = std::iter::once("layers").chain(std::iter::repeat(""));
+        let layers = keys.zip(&layers).map(|(key, layer)| row(key, &layer_in_words(layer)));
+        let head = [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))];
+        let lines = head.into_iter().chain(layers).chain(texts);
         console::print(&lines.collect::<Vec<_>>().join("\n"))
     }
 }
@@ -77,6 +82,12 @@ impl Info {
 fn row(key: &str, value: &str) -> String {
     let printable = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
     format!("{key:12} {value}").chars().map(printable).collect()
+}
+
+/// `albedo: R, G, B`; channels without the name of a layer stand alone.
+fn layer_in_words(LayerName { name, channels }: &LayerName) -> String {
+    let channels = channels.join(", ");
+    if name.is_empty() { channels } else { format!("{name}: {channels}") }
 }
 
 fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
@@ -100,6 +111,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     }
     let brightest = compiled.illuminance.as_ref().map(|light| format!(", {light}")).unwrap_or_default();
     row("lights", format!("{}{brightest}", geometry.lights));
+    row("emitting", counted(geometry.emitting_shapes as u128, "shape"));
     row("background", background_in_words(compiled.world.backdrop()));
     row("far lights", far_in_words(&compiled.world.far_lights()));
     row("materials", description.materials.len().to_string());
@@ -174,6 +186,7 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
             "unique_triangles": geometry.unique_triangles,
             "instances": geometry.instances,
             "lights": geometry.lights,
+            "emitting_shapes": geometry.emitting_shapes,
         },
         "illuminance": compiled.illuminance.as_ref().map(|Illuminance { light, value }| json!({"light": light, "middle": value})),
         "background": {"kind": world.backdrop().name(), "mean": world.backdrop().mean().to_array()},

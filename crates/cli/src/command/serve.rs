@@ -23,9 +23,13 @@ pub struct Serve {
     #[arg(long, value_name = "ADDRESS:PORT", value_parser = address, default_value = "127.0.0.1:8080")]
     addr: SocketAddr,
 
-    /// Serve at an address that other machines reach; a token, printed at start, is then needed for every request
+    /// Serve at an address that other machines reach
     #[arg(long)]
     allow_remote: bool,
+
+    /// Let every user and program of this machine look and steer, without the token in the printed address
+    #[arg(long, conflicts_with = "allow_remote")]
+    no_token: bool,
 
     /// Width and height in pixels, instead of the scene's
     #[arg(long, value_name = "WxH", value_parser = value::size)]
@@ -47,8 +51,8 @@ impl Serve {
         let threads = self.threads.map_or(0, usize::from);
         let options = juggler_session::Options { size: self.size, threads, watch: true, ..Default::default() };
         let session = Session::open(name, options);
-        let options =
-            Options { address: self.addr, allow_remote: self.allow_remote, scene: self.scene, ..Options::default() };
+        let (address, allow_remote, token) = (self.addr, self.allow_remote, !self.no_token);
+        let options = Options { address, allow_remote, token, scene: self.scene, ..Options::default() };
         let server = Server::bind(session, options, console::say)?;
         let url = server.url();
         let _running = server.start()?;

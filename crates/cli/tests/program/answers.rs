@@ -80,6 +80,13 @@ fn what_is_in_a_scene() {
     assert_eq!((&json["geometry"]["shapes"], &json["animation"]["frames"]), (&2.into(), &4.into()));
     assert_eq!(json["cameras"], serde_json::json!(["main", "top"]));
     assert_eq!((&json["background"]["kind"], &json["far_lights"][0]["chance"]), (&"solid".into(), &1.0.into()));
+    assert_eq!(json["geometry"]["emitting_shapes"], 0);
+    let emitting = r#""material": {"emissive": {"radiance": 3}}"#;
+    let balls = format!(
+        r#"{{"shape": "sphere", {emitting}}}, {{"shape": {{"disk": {{}}}}, {emitting}}}, {{"shape": "sphere"}}"#
+    );
+    fs::write(folder.path("emitting.json"), format!(r#"{{"version": 1, "objects": [{balls}]}}"#)).unwrap();
+    assert!(folder.good("info emitting.json").stdout.contains("\nemitting     2 shapes\n"));
     for said in ["background   solid, 0.2 0.3 0.5 on average\n", "far lights   solid 100 %\n"] {
         assert!(words.contains(said), "{words}");
     }

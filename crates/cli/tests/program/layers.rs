@@ -46,6 +46,23 @@ fn the_picture_is_the_same_with_layers_and_without() {
 }
 
 #[test]
+fn info_names_the_layers_of_a_picture() {
+    let folder = Folder::new();
+    folder.good(&format!("render {BALL} --aov albedo,depth -o two.exr -q"));
+    let words = folder.good("info two.exr").stdout;
+    assert!(words.contains("\nlayers       beauty: R, G, B\n             albedo: R, G, B\n"), "{words}");
+    let json: serde_json::Value = serde_json::from_str(&folder.good("info two.exr --json").stdout).unwrap();
+    let names: Vec<&str> =
+        json["layers"].as_array().unwrap().iter().map(|layer| layer["name"].as_str().unwrap()).collect();
+    assert_eq!(names[..3], ["beauty", "albedo", "depth"]);
+    assert_eq!(json["layers"][1]["channels"], serde_json::json!(["R", "G", "B"]));
+    folder.good(&format!("render {BALL} -o plain.exr -q"));
+    assert!(folder.good("info plain.exr").stdout.contains("\nlayers       R, G, B\n"));
+    folder.good(&format!("render {BALL} -o plain.png -q"));
+    assert!(!folder.good("info plain.png").stdout.contains("layers"));
+}
+
+#[test]
 fn layers_are_in_the_primaries_that_are_asked_for() {
     let folder = Folder::new();
     let wide = SCENE.replacen('{', r#"{"tone": {"primaries": "acescg"},"#, 1);

@@ -26,18 +26,28 @@ fn end(mut child: Child, signal: &str) -> (Option<i32>, String) {
     (status, errors)
 }
 
+/// The answer to a request.
+fn get(host: &str, path: &str) -> String {
+    let mut stream = TcpStream::connect(host).unwrap();
+    write!(stream, "GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
+}
+
 #[test]
 fn it_says_where_it_is_and_ends_by_a_signal() {
     for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
         let folder = Folder::new();
         let (child, url) = start(&folder, "serve ball.json --addr 127.0.0.1:0 --threads 1");
-        let host = url.trim_end_matches('/');
-        let mut stream = TcpStream::connect(host).unwrap();
-        write!(stream, "GET / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).unwrap();
-        assert!(answer.starts_with("HTTP/1.1 200") && answer.contains("<title>juggler</title>"), "{answer}");
-        assert_eq!(end(child, signal), (Some(status), "interrupted\n".to_owned()));
+        let (host, path) = url.split_once('/').unwrap();
+        assert_eq!(path.strip_prefix("?token=").unwrap().len(), 32, "{url}");
+        let page = get(host, path);
+        assert!(page.starts_with("HTTP/1.1 200") && page.contains("<title>juggler</title>"), "{page}");
+        assert!(get(host, "").starts_with("HTTP/1.1 403"), "without the token");
+        let (ended, said) = end(child, signal);
+        assert_eq!(ended, Some(status));
+        assert!(said.starts_with("refused: ") && said.ends_with("\ninterrupted\n"), "{said}");
         assert!(folder.files().is_empty());
     }
 }
@@ -50,6 +60,17 @@ fn other_machines_need_a_flag_and_a_token() {
     let (child, url) = start(&folder, "serve ball.json --addr 0.0.0.0:0 --allow-remote --threads 1");
     assert!(url.split_once("/?token=").unwrap().1.len() == 32, "{url}");
     let _ = end(child, "-TERM");
+}
+
+#[test]
+fn a_token_can_be_done_without_on_this_machine_alone() {
+    let folder = Folder::new();
+    let (child, url) = start(&folder, "serve ball.json --addr 127.0.0.1:0 --no-token --threads 1");
+    let host = url.strip_suffix('/').unwrap();
+    assert!(get(host, "").starts_with("HTTP/1.1 200"), "{url}");
+    assert_eq!(end(child, "-TERM"), (Some(143), "interrupted\n".to_owned()));
+    let message = folder.bad("serve ball.json --addr 0.0.0.0:0 --allow-remote --no-token", 2);
+    assert!(message.contains("--no-token") && message.contains("--allow-remote"), "{message}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::output::{WriteSeek, whole_file};
 use crate::{ExrCompression, Header, ImageError, Primaries, SampleDepth, Viewpoint};
 use std::path::{Path, PathBuf};
 
-pub use read::read_layer;
+pub use read::{LayerName, layer_names, read_layer};
 
 /// What stands for a layer's name in the name of a file.
 pub const PLACEHOLDER: &str = "{}";

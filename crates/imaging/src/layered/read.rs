@@ -1,4 +1,4 @@
-//! Reading one layer of an EXR by the names of its channels.
+//! Names of an EXR's layers, and one of them read by the names of its channels.
 
 use crate::codec::exr::{heads, unreadable};
 use crate::input::{open, source};
@@ -12,6 +12,41 @@ use std::path::Path;
 
 /// A layer's width, height, and one value after the other for each pixel, row by row.
 pub type LayerValues = (u32, u32, Vec<[f32; 3]>);
+
+/// One layer of an EXR as its head names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LayerName {
+    /// Name: what stands before a channel's last dot, or else the name of the file's part; empty where there is neither.
+    pub name: String,
+    /// Channels without that name, such as `R`, in the order red, green, blue, alpha, then by the alphabet.
+    pub channels: Vec<String>,
+}
+
+/// Reads the names of all layers of an EXR, in the file's order. None for a file of another format.
+pub fn layer_names(path: &Path) -> Result<Vec<LayerName>, ImageError> {
+    let place = path.display().to_string();
+    let mut bytes = open(path)?;
+    let limits = Limits::default();
+    let source = source(&place, &mut bytes, &limits)?;
+    if source.format != Format::Exr {
+        return Ok(Vec::new());
+    }
+    let mut layers: Vec<LayerName> = Vec::new();
+    for header in &heads(source, &mut bytes)? {
+        let part = header.own_attributes.layer_name.as_ref().map_or_else(String::new, ToString::to_string);
+        for channel in &header.channels.list {
+            let full = channel.name.to_string();
+            let (name, channel) = full.rsplit_once('.').unwrap_or((&part, &full));
+            match layers.iter_mut().find(|layer| layer.name == name) {
+                Some(layer) => layer.channels.push(channel.to_owned()),
+                None => layers.push(LayerName { name: name.to_owned(), channels: vec![channel.to_owned()] }),
+            }
+        }
+    }
+    let place_of = |channel: &String| ["R", "G", "B", "A"].iter().position(|known| known == channel).unwrap_or(4);
+    layers.iter_mut().for_each(|layer| layer.channels.sort_by_key(place_of));
+    Ok(layers)
+}
 
 /// Reads what stands in up to three channels, such as `variance.R`, `variance.G` and `variance.B`; where fewer are named, the first
 /// of them stands for the others. `None` where the file is no EXR, or none of its layers has them.

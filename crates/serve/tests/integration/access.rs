@@ -1,14 +1,12 @@
 //! Who is let in: one test for each rule.
-use crate::common::{Serving, serve, serve_with};
+use crate::common::{Serving, serve, serve_open, serve_with};
 use juggler_serve::{Options, ServeError, Server};
 use std::net::SocketAddr;
 
 /// A server that others could reach: at all addresses, reached here through the loopback.
-fn serve_remote() -> (Serving, String) {
+fn serve_remote() -> Serving {
     let address = SocketAddr::from(([0, 0, 0, 0], 0));
-    let serving = serve_with(Options { address, allow_remote: true, ..Options::default() });
-    let token = serving.url.split_once("?token=").expect("an address with a token").1.to_owned();
-    (serving, token)
+    serve_with(Options { address, allow_remote: true, ..Options::default() })
 }
 
 #[test]
@@ -17,8 +15,7 @@ fn it_listens_to_this_machine_alone() {
     let session = crate::common::small_session();
     let options = Options { address: SocketAddr::from(([0, 0, 0, 0], 0)), ..Options::default() };
     assert!(matches!(Server::bind(session, options, |_| ()), Err(ServeError::Remote(_))));
-    let serving = serve();
-    assert!(!serving.url.contains("token") && serving.is_alive());
+    assert!(serve().is_alive());
 }
 
 #[test]
@@ -31,7 +28,7 @@ fn a_port_in_use_is_said() {
 
 #[test]
 fn only_own_names_lead_in() {
-    let serving = serve();
+    let serving = serve_open();
     let port = serving.address.port();
     for own in [format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")] {
         assert_eq!(serving.ask("GET", "/", &[&format!("Host: {own}")]).status, 200, "{own}");
@@ -47,12 +44,12 @@ fn only_own_names_lead_in() {
     assert_eq!(serving.ask("GET", &format!("http://evil.example:{port}/"), &[&own]).status, 403, "in the address");
     let page = serving.open("/socket", &[("Host", "evil.example"), ("Origin", "http://evil.example")]);
     assert_eq!(page.err(), Some(403), "a rebound name");
-    serving.wait_for_line("evil.example");
+    serving.wait_for_line("the Host is another server");
 }
 
 #[test]
 fn pages_of_other_sites_get_no_socket() {
-    let serving = serve();
+    let serving = serve_open();
     let own = format!("http://{}", serving.host());
     assert!(serving.open("/socket", &[("Origin", &own)]).is_ok());
     let port = serving.address.port();
@@ -74,7 +71,7 @@ fn pages_of_other_sites_get_no_socket() {
 
 #[test]
 fn nothing_changes_by_a_plain_request() {
-    let serving = serve();
+    let serving = serve_open();
     let (host, own) = (format!("Host: {}", serving.host()), format!("Origin: http://{}", serving.host()));
     for method in ["POST", "PUT", "DELETE", "PATCH", "OPTIONS", "NONSENSE"] {
         for path in ["/", "/socket", "/save/picture.png", "/catalogue.json"] {
@@ -84,31 +81,89 @@ fn nothing_changes_by_a_plain_request() {
     }
 }
 
-#[test]
-fn a_remote_server_asks_every_request_for_its_token() {
-    let (serving, token) = serve_remote();
+/// Whether every request is refused that does not have the token.
+fn needs_its_token(serving: &Serving) {
+    let token = serving.url.split_once("?token=").expect("an address with a token").1;
     assert_eq!(token.len(), 32);
     let own = format!("http://{}", serving.host());
+    let host = format!("Host: {}", serving.host());
     let paths = ["/", "/page.js", "/catalogue.json", "/thumbnail/one-sphere.jpg", "/save/picture.png", "/socket", "/x"];
     let other = "0".repeat(32);
     for path in paths {
-        assert_eq!(serving.get(path).status, 403, "{path}");
+        assert_eq!(serving.ask("GET", path, &[&host]).status, 403, "{path}");
         for wrong in ["", &token[..31], &format!("{token}0"), &other] {
-            assert_eq!(serving.get(&format!("{path}?token={wrong}")).status, 403, "{path} {wrong}");
+            assert_eq!(serving.ask("GET", &format!("{path}?token={wrong}"), &[&host]).status, 403, "{path} {wrong}");
             let cookie = format!("Cookie: juggler_{}={wrong}", serving.address.port());
-            assert_eq!(serving.ask("GET", path, &[&format!("Host: {}", serving.host()), &cookie]).status, 403);
+            assert_eq!(serving.ask("GET", path, &[&host, &cookie]).status, 403);
         }
     }
     assert_eq!(serving.open("/socket", &[("Origin", &own)]).err(), Some(403));
     assert!(serving.open(&format!("/socket?token={token}"), &[("Origin", &own)]).is_ok());
     serving.wait_for_line("no token");
-    assert!(serving.log.lock().unwrap().iter().all(|line| !line.contains(&token)), "the token is in the log");
+    assert!(serving.log.lock().unwrap().iter().all(|line| !line.contains(token)), "the token is in the log");
+}
+
+#[test]
+fn other_users_of_this_machine_need_the_token() {
+    needs_its_token(&serve());
+}
+
+#[test]
+fn other_machines_need_the_token_even_where_none_is_wanted() {
+    needs_its_token(&serve_remote());
+    let address = SocketAddr::from(([0, 0, 0, 0], 0));
+    needs_its_token(&serve_with(Options { address, allow_remote: true, token: false, ..Options::default() }));
+}
+
+#[test]
+fn a_server_without_a_token_lets_this_machine_in() {
+    let serving = serve_open();
+    assert!(!serving.url.contains("token"), "{}", serving.url);
+    assert_eq!(serving.ask("GET", "/", &[&format!("Host: {}", serving.host())]).status, 200);
+    serving.page().told("status", |_| true);
+}
+
+#[test]
+fn refusals_repeat_nothing_that_was_sent() {
+    let (serving, sent) = (serve(), "marker7f3a");
+    let host = format!("Host: {}", serving.host());
+    let cookie = format!("Cookie: {}", serving.cookie.as_ref().unwrap());
+    let answers = [
+        serving.ask("GET", "/", &[&format!("Host: {sent}")]),
+        serving.ask("GET", "/", &[&host, &cookie, &format!("Origin: http://{sent}")]),
+        serving.ask("GET", &format!("/?token={sent}"), &[&host]),
+        serving.ask("GET", "/", &[&host, &format!("Cookie: juggler_{}={sent}", serving.address.port())]),
+        serving.ask("GET", &format!("/{sent}"), &[&host, &cookie]),
+        serving.ask("GET", &format!("/thumbnail/{sent}.jpg"), &[&host, &cookie]),
+        serving.ask("GET", &format!("/save/{sent}.png"), &[&host, &cookie]),
+        serving.ask("GET", &format!("http://{sent}/"), &[&host, &cookie]),
+        serving.ask(sent, "/", &[&host, &cookie]),
+    ];
+    for answer in answers {
+        assert!(answer.status >= 400 && !answer.text().contains(sent) && !answer.head.contains(sent), "{answer:?}");
+    }
+    let mut page = serving.page();
+    for message in [
+        sent.to_owned(),
+        format!(r#"{{"{sent}": true}}"#),
+        format!(r#"{{"edit": {{"{sent}": 1}}}}"#),
+        format!(r#"{{"edit": {{"scene": "{sent}"}}}}"#),
+        format!(r#"{{"edit": {{"set": {{"path": "/{sent}", "value": 1}}}}}}"#),
+        format!(r#"{{"edit": {{"set": {{"path": "/lights/0", "value": "{sent}"}}}}}}"#),
+    ] {
+        page.say(&message);
+        let why = page.told("refused", |_| true).to_string();
+        assert!(!why.contains(sent), "{message}: {why}");
+    }
+    let log = serving.log.lock().unwrap();
+    assert!(log.len() > 5 && log.iter().all(|line| !line.contains(sent)), "{log:?}");
 }
 
 #[test]
 fn the_page_gets_a_cookie_for_the_token() {
-    let (serving, token) = serve_remote();
-    let page = serving.get(&format!("/?token={token}"));
+    let serving = serve_remote();
+    let (_, with_token) = serving.url.rsplit_once('/').unwrap();
+    let page = serving.ask("GET", &format!("/{with_token}"), &[&format!("Host: {}", serving.host())]);
     assert_eq!(page.status, 200);
     let cookie = page.header("set-cookie").unwrap();
     assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"), "{cookie}");
@@ -122,7 +177,7 @@ fn the_page_gets_a_cookie_for_the_token() {
 
 #[test]
 fn everything_is_sent_with_headers_that_keep_others_out() {
-    let serving = serve();
+    let serving = serve_open();
     for path in ["/", "/page.js", "/catalogue.json", "/nothing"] {
         let answer = serving.get(path);
         let policy = answer.header("content-security-policy").unwrap();

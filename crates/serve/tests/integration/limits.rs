@@ -1,12 +1,12 @@
 //! How much of anything there may be: one test for each limit. What is too much is refused, and the server goes on.
-use crate::common::{PATIENCE, answer, serve, serve_with, short_limits, wait_until};
+use crate::common::{PATIENCE, answer, serve, serve_open, serve_with, short_limits, wait_until};
 use juggler_serve::{Limits, Options};
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 
 #[test]
 fn two_hundred_connections_are_too_many() {
-    let serving = serve();
+    let serving = serve_open();
     let mut streams: Vec<_> = (0..200).map(|_| serving.connect()).collect();
     serving.wait_for_line("too many connections");
     // Those that were taken get an answer, the others were told so and closed.
@@ -67,7 +67,7 @@ fn half_a_request_is_not_waited_for() {
 
 #[test]
 fn a_connection_that_is_kept_and_not_used_is_closed() {
-    let serving = serve_with(Options { limits: short_limits(), ..Options::default() });
+    let serving = serve_with(Options { limits: short_limits(), token: false, ..Options::default() });
     let mut stream = serving.connect();
     write!(stream, "GET /icon.svg HTTP/1.1\r\nHost: {}\r\n\r\n", serving.host()).unwrap();
     let start = Instant::now();
@@ -107,7 +107,7 @@ fn a_silent_page_is_let_go() {
 
 #[test]
 fn a_long_head_is_refused() {
-    let serving = serve();
+    let serving = serve_open();
     let answer =
         serving.ask("GET", "/", &[&format!("Host: {}", serving.host()), &format!("X: {}", "a".repeat(100_000))]);
     assert!(answer.status == 431 || answer.status == 0, "{answer:?}");
@@ -119,7 +119,7 @@ fn a_long_head_is_refused() {
 
 #[test]
 fn bytes_that_are_no_web_socket_end_their_connection() {
-    let serving = serve();
+    let serving = serve_open();
     for turn in 0..50 {
         let mut stream = serving.connect();
         let host = serving.host();

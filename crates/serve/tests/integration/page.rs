@@ -76,12 +76,17 @@ fn one_page_steers_and_the_others_watch() {
     second.say(r#"{"steer": true}"#);
     second.told("wheel", |wheel| wheel["steering"] == true);
     first.told("wheel", |wheel| wheel["steering"] == false);
-    // A page that goes leaves the wheel; whoever turns it next has it.
+    // A page that goes leaves the wheel; of several, whoever turns it next has it.
+    let mut third = serving.page();
     drop(second);
-    first.told("wheel", |wheel| wheel["free"] == true && wheel["watching"] == 1);
+    first.told("wheel", |wheel| wheel["free"] == true && wheel["watching"] == 2);
     first.say(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
     first.told("wheel", |wheel| wheel["steering"] == true);
     first.told("status", |status| status["revision"].as_u64() > Some(revision));
+    third.told("wheel", |wheel| wheel["steering"] == false && wheel["free"] == false);
+    // The only one steers without having asked.
+    drop(first);
+    third.told("wheel", |wheel| wheel["steering"] == true && wheel["watching"] == 1);
 }
 
 #[test]

@@ -13,6 +13,8 @@ mod edits;
 mod files;
 mod lights;
 mod pictures;
+mod preview;
+mod thumbnails;
 
 use juggler_session::{Session, Status};
 use std::sync::Arc;

@@ -54,6 +54,8 @@ pub trait Camera: Send + Sync {
     fn axes(&self) -> Result<Axes, InvalidCamera>;
     /// Stands at `eye` and looks along `direction`, its top leaning to `up`; nothing else of its pose is left.
     fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3);
+    /// Point that the scene has it look at, by `look_at`; none where the scene gives a direction, or after [`Self::stand`].
+    fn target(&self) -> Option<Vec3>;
     /// Direction to which the picture's top leans before it is turned, of any length.
     fn upward(&self) -> Vec3;
     /// Divides the tangent of half its field of view, or the area that it shows, by `factor`, as far as pictures allow.

@@ -114,6 +114,10 @@ impl Camera for Orthographic {
         self.r#move = Move::default();
     }
 
+    fn target(&self) -> Option<Vec3> {
+        self.look_at
+    }
+
     fn upward(&self) -> Vec3 {
         self.up
     }

@@ -117,6 +117,10 @@ impl Camera for Perspective {
         self.r#move = Move::default();
     }
 
+    fn target(&self) -> Option<Vec3> {
+        self.look_at
+    }
+
     fn upward(&self) -> Vec3 {
         self.up
     }

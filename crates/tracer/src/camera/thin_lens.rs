@@ -130,6 +130,10 @@ impl Camera for ThinLens {
         self.r#move = Move::default();
     }
 
+    fn target(&self) -> Option<Vec3> {
+        self.look_at
+    }
+
     fn upward(&self) -> Vec3 {
         self.up
     }

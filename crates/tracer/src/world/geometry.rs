@@ -19,6 +19,8 @@ pub struct Geometry {
     pub instances: u64,
     /// Lights.
     pub lights: usize,
+    /// Shapes that emit light and are sampled as lights, those of shared levels counted as often as they are placed.
+    pub emitting_shapes: usize,
     /// Bytes of shapes.
     pub geometry_bytes: usize,
     /// Bytes of the hierarchies, over the objects and within meshes.

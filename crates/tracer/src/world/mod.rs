@@ -247,6 +247,8 @@ impl World {
         let texture_bytes = self.materials.textures().image_bytes();
         let background_bytes = self.background.heap_bytes();
         let emitter_bytes = self.emitters.heap_bytes();
-        Geometry { texture_bytes, background_bytes, emitter_bytes, ..Geometry::of(&self.top, self.lamps.len()) }
+        let emitting_shapes = self.emitters.glowing().count();
+        let all = Geometry::of(&self.top, self.lamps.len());
+        Geometry { emitting_shapes, texture_bytes, background_bytes, emitter_bytes, ..all }
     }
 }

@@ -18,6 +18,8 @@ pub const PATIENCE: Duration = Duration::from_secs(30);
 pub struct Serving {
     pub address: SocketAddr,
     pub url: String,
+    /// The cookie that stands for the token, as a header's value; none where requests need no token.
+    pub cookie: Option<String>,
     pub session: Session,
     pub log: Arc<Mutex<Vec<String>>>,
     _running: Running,
@@ -48,9 +50,14 @@ pub fn small_session() -> Session {
     Session::open("one-sphere", options)
 }
 
-/// On a free port of this machine.
+/// On a free port of this machine, as it is by default: with a token.
 pub fn serve() -> Serving {
     serve_with(Options::default())
+}
+
+/// Without a token, so that requests are let in or refused for other reasons.
+pub fn serve_open() -> Serving {
+    serve_with(Options { token: false, ..Options::default() })
 }
 
 /// With other options; the port is free anyway.
@@ -64,7 +71,9 @@ pub fn serve_with(options: Options) -> Serving {
     let server =
         Server::bind(session.clone(), options, move |line| lines.lock().unwrap().push(line.to_owned())).unwrap();
     let (address, url) = (server.address(), server.url());
-    Serving { address, url, session, log, _running: server.start().unwrap() }
+    let token = url.split_once("?token=").map(|(_, token)| token);
+    let cookie = token.map(|token| format!("juggler_{}={token}", address.port()));
+    Serving { address, cookie, session, log, _running: server.start().unwrap(), url }
 }
 
 /// Limits that tests need not wait for.
@@ -94,8 +103,11 @@ impl Serving {
         answer(&mut stream)
     }
 
+    /// Asks as the page does, which has the cookie.
     pub fn get(&self, path: &str) -> Answer {
-        self.ask("GET", path, &[&format!("Host: {}", self.host())])
+        let cookie = self.cookie.iter().map(|cookie| format!("Cookie: {cookie}"));
+        let lines: Vec<String> = cookie.chain([format!("Host: {}", self.host())]).collect();
+        self.ask("GET", path, &lines.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
     /// Whether the page is still given out.
@@ -123,7 +135,9 @@ impl Serving {
     }
 
     pub fn try_page(&self) -> Result<Page, u16> {
-        self.open("/socket", &[("Origin", &format!("http://{}", self.host()))])
+        let origin = format!("http://{}", self.host());
+        let cookie = self.cookie.iter().map(|cookie| ("Cookie", cookie.as_str()));
+        self.open("/socket", &cookie.chain([("Origin", origin.as_str())]).collect::<Vec<_>>())
     }
 
     /// Waits until the log has a line with this in it.

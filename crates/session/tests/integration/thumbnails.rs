@@ -1,0 +1,69 @@
+//! Small pictures of the built-in scenes: all are there, and show what the scenes show.
+use juggler::imaging::{Limits, Tone, decode};
+use juggler::math::{Image, Rgb};
+use juggler::scene::{Scene, built_in_scenes};
+use juggler::{Settings, render};
+use juggler_session::{screen::Toner, thumbnail};
+use std::io::Cursor;
+
+/// What all of them may add to the program, bytes.
+const MOST_BYTES: usize = 200 << 10;
+/// Fields that pictures are compared by, to each side.
+const FIELDS: u32 = 8;
+/// Levels by which fields of a scene's two pictures may differ, in the mean: few samples are noisy. Pictures of two scenes
+/// differ by 82 in the median; twelve of 946 pairs, dark or nearly the same, by less than this.
+const MOST_LEVELS: f64 = 16.0;
+
+fn decoded(name: &str) -> Image {
+    let file =
+        thumbnail(name).unwrap_or_else(|| panic!("`{name}` has no thumbnail; CONTRIBUTING tells how to make it"));
+    decode(name, Cursor::new(file), &Limits::default()).unwrap()
+}
+
+/// Levels of the screen, 0 to 255, in fields, each the mean of its pixels.
+fn fields(image: &Image, tone: &Tone) -> Vec<f64> {
+    let toner = Toner::new(tone);
+    let (width, height) = (image.width(), image.height());
+    let mut sums = vec![(0.0, 0.0); (FIELDS * FIELDS * 3) as usize];
+    for (place, pixel) in (0..).zip(image.pixels()) {
+        let (x, y): (u32, u32) = (place % width, place / width);
+        let field = ((y * FIELDS / height) * FIELDS + x * FIELDS / width) * 3;
+        for (channel, level) in toner.rgba(*pixel)[..3].iter().enumerate() {
+            let (sum, count) = &mut sums[field as usize + channel];
+            (*sum, *count) = (*sum + f64::from(*level), *count + 1.0);
+        }
+    }
+    sums.into_iter().map(|(sum, count)| sum / f64::max(count, 1.0)).collect()
+}
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f64>() / a.len() as f64
+}
+
+#[test]
+fn every_built_in_scene_has_one_and_they_are_small() {
+    let bytes: usize = built_in_scenes().iter().filter_map(|scene| thumbnail(scene.name)).map(<[u8]>::len).sum();
+    assert!(bytes <= MOST_BYTES, "{bytes}");
+    for scene in built_in_scenes() {
+        let image = decoded(scene.name);
+        assert_eq!(image.width().max(image.height()), 208, "{}", scene.name);
+        assert!(image.pixels().iter().any(|pixel| *pixel != Rgb::BLACK), "{}", scene.name);
+    }
+    assert!(thumbnail("no-such-scene").is_none());
+}
+
+#[test]
+fn they_show_what_the_scenes_show() {
+    let display = Tone::default();
+    let shown: Vec<(&str, Vec<f64>)> =
+        built_in_scenes().iter().map(|scene| (scene.name, fields(&decoded(scene.name), &display))).collect();
+    for (name, fields_of_thumbnail) in &shown {
+        let scene = Scene::built_in(name).unwrap();
+        let image = decoded(name);
+        let size = Some([image.width() / 4, image.height() / 4]);
+        let settings = Settings { size, samples: Some(8), ..Settings::default() };
+        let rendered = render(&scene, &settings).unwrap();
+        let off = difference(fields_of_thumbnail, &fields(&rendered, &scene.description.tone));
+        assert!(off < MOST_LEVELS, "the thumbnail of `{name}` is off by {off:.1} levels");
+    }
+}
