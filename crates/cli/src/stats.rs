@@ -16,6 +16,7 @@ pub struct Stats<'s> {
     samples: u32,
     threads: usize,
     integrator: &'s str,
+    integrator_reason: String,
     seconds: Seconds,
     rays: RayCounts,
     geometry: Geometry,
@@ -104,7 +105,8 @@ impl<'s> Stats<'s> {
             size: picture.size(),
             samples: picture.samples(),
             threads,
-            integrator: picture.compiled().settings.integrator.name(),
+            integrator: picture.integrator().name(),
+            integrator_reason: picture.compiled().integrator.reason.to_string(),
             seconds,
             rays: RayCounts {
                 camera: rays.camera,

@@ -1,16 +1,17 @@
 //! Description → world: names looked up, groups placed, shapes prepared, gaps filled with defaults.
 
 use crate::description::{Description, Render};
+use crate::integrator::IntegratorChoice;
 use crate::path::Path;
 use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
-use juggler_tracer::integrator::AnyIntegrator;
 use juggler_tracer::material::MaterialTable;
 use juggler_tracer::world::{Labels, Lamp, Object, World};
 use std::sync::Arc;
 
+mod areas;
 mod count;
 mod course;
 mod defaults;
@@ -45,8 +46,12 @@ pub struct Compiled {
     pub cameras: Vec<(String, AnyCamera)>,
     /// The first camera at even times from opening to closing of the shutter; nothing when it stays as it is.
     pub course: Vec<AnyCamera>,
-    /// Size, samples, integrator and the like.
+    /// Size, samples and the like, as the scene says.
     pub settings: Render,
+    /// What the scene is rendered with.
+    pub integrator: IntegratorChoice,
+    /// A box around all objects that have an end, area lights left out.
+    pub bounds: Aabb,
     /// What people should know about the scene.
     pub warnings: Problems,
     /// Names of what masks and layers tell apart.
@@ -71,6 +76,10 @@ pub struct Assembly {
     pub labels: Labels,
     /// As [`Compiled::names`].
     pub names: Names,
+    /// As [`Compiled::integrator`].
+    pub integrator: IntegratorChoice,
+    /// As [`Compiled::bounds`].
+    pub bounds: Aabb,
 }
 
 impl Compiled {
@@ -92,9 +101,11 @@ impl Assembly {
     /// from opening to closing of the shutter; nothing when it does not change.
     pub fn of(scene: &Description, moments: &[Description], files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
+        let integrator = IntegratorChoice::of(scene);
         settings::check(&scene.render, &mut findings);
         let sources = lighting::lights(&scene.lights, files, &mut findings);
         settings::check_lights(scene, &sources, &mut findings);
+        settings::check_fit(scene, &integrator, &mut findings);
         let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
         let mut names = Names::of(scene);
@@ -106,15 +117,18 @@ impl Assembly {
             }
         };
         let lit =
-            !scene.lights.is_empty() || materials.glows() || background.as_ref().is_some_and(|b| lights(scene, b));
+            !scene.lights.is_empty() || materials.glows() || background.as_ref().is_some_and(|b| lights(&integrator, b));
         let bounds = bounds(&objects);
+        let mut placed = (objects, entries);
+        areas::add(scene, moments, &mut materials, &mut names, &mut placed, &mut findings);
+        let (objects, entries) = placed;
         let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
         let mut lights: Vec<Lamp> = if lit {
             // What is wrong with files has been said.
             let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
             course::lamps(&sources, &moments.iter().map(loaded).collect::<Vec<_>>())
         } else {
-            defaults::lights(&bounds).into_iter().map(Lamp::from).collect()
+            defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect()
         };
         if lit {
             names.mark(&mut lights, &sources);
@@ -122,37 +136,37 @@ impl Assembly {
         let labels = names.labels(scene, entries);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut names, &mut findings);
-        (Self { objects, materials, lights, background, cameras, course, labels, names }, findings)
+        (Self { objects, materials, lights, background, cameras, course, labels, names, integrator, bounds }, findings)
     }
 
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
-        let (cameras, course, names) = (self.cameras, self.course, Arc::new(self.names));
-        Compiled { world: Arc::new(world), cameras, course, settings, warnings, names }
+        let Self { cameras, course, names, integrator, bounds, .. } = self;
+        let (world, names) = (Arc::new(world), Arc::new(names));
+        Compiled { world, cameras, course, settings, integrator, bounds, warnings, names }
     }
 }
 
 /// Cameras by name, the chosen one first, and what that one does while the shutter is open.
 type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
 
-/// How a scene looks at its world, which is there already.
+/// How a scene looks at its world, which is there already; `bounds` are those of its objects.
 pub fn look_at(
     scene: &Description,
     moments: &[Description],
-    world: &World,
+    bounds: &Aabb,
 ) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
     let mut findings = Vec::new();
     settings::check(&scene.render, &mut findings);
-    let (cameras, course) = cameras(scene, moments, &or_some(world.bounds()), &mut findings);
+    let (cameras, course) = cameras(scene, moments, bounds, &mut findings);
     (cameras, course, findings)
 }
 
 /// Whether a background lights the scene: panoramas and skies are made for it, and paths find every one.
-fn lights(scene: &Description, background: &AnyBackground) -> bool {
-    let follows_paths = matches!(scene.render.integrator, AnyIntegrator::Path(_) | AnyIntegrator::Direct(_));
+fn lights(integrator: &IntegratorChoice, background: &AnyBackground) -> bool {
     let is_light = matches!(background, AnyBackground::Environment(_) | AnyBackground::Sky(_));
-    is_light || follows_paths && !background.mean().is_black()
+    is_light || integrator.follows_paths() && !background.mean().is_black()
 }
 
 /// A box around all objects that have an end.

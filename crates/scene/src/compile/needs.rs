@@ -1,5 +1,6 @@
 //! What a scene will need memory for, told before its files are read and its world is built.
 
+use super::areas;
 use super::count::{count, stored};
 use super::images::pictures;
 use super::lighting::{self, Purpose};
@@ -36,7 +37,8 @@ impl Needs {
     /// Of a scene whose files lie there.
     pub fn of(scene: &Description, files: Files<'_>) -> Self {
         // Too many objects are refused when they are to be placed.
-        let objects = count(scene).map_or(0, |counts| stored(scene, &counts));
+        let areas = areas::of(&scene.lights).count() as u64;
+        let objects = count(scene).map_or(0, |counts| stored(scene, &counts).saturating_add(areas));
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.origin.map_or(0, |(sources, _)| sources.bytes_to_read());
         let mut needs = Self { text, objects, shadows, ..Self::default() };
