@@ -69,7 +69,13 @@ fn what_is_in_a_scene() {
     assert_eq!((&json["geometry"]["shapes"], &json["animation"]["frames"]), (&2.into(), &4.into()));
     assert_eq!(json["cameras"], serde_json::json!(["main", "top"]));
     assert_eq!((&json["background"]["kind"], &json["far_lights"][0]["chance"]), (&"solid".into(), &1.0.into()));
-    for said in ["background   solid, 0.2 0.3 0.5 on average\n", "far lights   solid 100 %\n"] {
+    let reason = "chosen because all lights and materials are of the classic kind";
+    assert_eq!((&json["integrator"], &json["integrator_reason"]), (&"classic".into(), &reason.into()));
+    for said in [
+        "background   solid, 0.2 0.3 0.5 on average\n",
+        "far lights   solid 100 %\n",
+        &format!("integrator   classic, {reason}\n"),
+    ] {
         assert!(words.contains(said), "{words}");
     }
     fs::write(

@@ -7,6 +7,7 @@ use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
+use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::MaterialTable;
 use juggler_tracer::world::{Labels, Lamp, Object, World};
 use std::sync::Arc;
@@ -15,6 +16,7 @@ mod areas;
 mod count;
 mod course;
 mod defaults;
+mod facing;
 mod images;
 mod labels;
 mod lighting;
@@ -109,33 +111,30 @@ impl Assembly {
         let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
         let mut names = Names::of(scene);
-        let (objects, entries) = match count::count(scene) {
+        let mut placed = match count::count(scene) {
             Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
             Err(problems) => {
                 findings.extend(problems);
                 (Vec::new(), Vec::new())
             }
         };
-        let lit =
-            !scene.lights.is_empty() || materials.glows() || background.as_ref().is_some_and(|b| lights(&integrator, b));
-        let bounds = bounds(&objects);
-        let mut placed = (objects, entries);
+        let lit = !scene.lights.is_empty()
+            || materials.glows()
+            || background.as_ref().is_some_and(|b| lights(&integrator, b));
+        let bounds = bounds(&placed.0);
         areas::add(scene, moments, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
         let (cameras, course) = cameras(scene, moments, &bounds, &mut findings);
-        let mut lights: Vec<Lamp> = if lit {
-            // What is wrong with files has been said.
-            let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
-            course::lamps(&sources, &moments.iter().map(loaded).collect::<Vec<_>>())
+        let lights = if lit {
+            lamps(&sources, moments, files, &names)
         } else {
             defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect()
         };
-        if lit {
-            names.mark(&mut lights, &sources);
-        }
         let labels = names.labels(scene, entries);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut names, &mut findings);
+        facing::Scenery { scene, objects: &objects, entries: &labels.entries, materials: &materials }
+            .check(&mut findings);
         (Self { objects, materials, lights, background, cameras, course, labels, names, integrator, bounds }, findings)
     }
 
@@ -146,6 +145,15 @@ impl Assembly {
         let (world, names) = (Arc::new(world), Arc::new(names));
         Compiled { world, cameras, course, settings, integrator, bounds, warnings, names }
     }
+}
+
+/// The scene's lights, which may change while the shutter is open.
+fn lamps(sources: &[AnyLight], moments: &[Description], files: Files<'_>, names: &Names) -> Vec<Lamp> {
+    // What is wrong with files has been said.
+    let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
+    let mut lamps = course::lamps(sources, &moments.iter().map(loaded).collect::<Vec<_>>());
+    names.mark(&mut lamps, sources);
+    lamps
 }
 
 /// Cameras by name, the chosen one first, and what that one does while the shutter is open.

@@ -278,8 +278,7 @@ mod tests {
             let solid_angle = std::f32::consts::TAU * (1.0 - fun::cos(degrees.to_radians()));
             assert!((on_axis(&spot) * solid_angle / 100.0 - 1.0).abs() < 1e-4, "{degrees}: {}", on_axis(&spot));
         }
-        let cosine =
-            Spot { power, beam_degrees: 90.0, cutoff_degrees: 90.0, beam_exponent: 1.0, ..Spot::default() };
+        let cosine = Spot { power, beam_degrees: 90.0, cutoff_degrees: 90.0, beam_exponent: 1.0, ..Spot::default() };
         assert!((on_axis(&cosine) * std::f32::consts::PI / 100.0 - 1.0).abs() < 1e-4);
         let shut = Spot { power, beam_degrees: 0.0, cutoff_degrees: 0.0, ..Spot::default() };
         assert!(shut.check().is_ok() && shut.power(1.0) == 0.0);
