@@ -187,7 +187,7 @@ impl Light for Area {
             let message = || "`look_at` must be finite, and another point than `position`".to_owned();
             usable.then_some(()).ok_or_else(|| InvalidLight { field: "look_at", message: message() })?;
         }
-        either("look_at", self.look_at.is_some(), "direction", self.direction.is_some())?;
+        either(("look_at", self.look_at.is_some()), ("direction", self.direction.is_some()))?;
         let strength = Strength { name: "radiance", value: self.radiance, power: self.power };
         strength.check(self.color, self.radiance())
     }

@@ -123,7 +123,7 @@ fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), 
 }
 
 /// Refuses two fields that say the same.
-fn either(field: &'static str, has: bool, other: &'static str, has_other: bool) -> Result<(), InvalidLight> {
+fn either((field, has): (&'static str, bool), (other, has_other): (&'static str, bool)) -> Result<(), InvalidLight> {
     let message = || format!("`{field}` stands in place of `{other}`: write one of them, not both");
     if has && has_other { Err(InvalidLight { field, message: message() }) } else { Ok(()) }
 }

@@ -18,7 +18,7 @@ impl Strength {
     /// Checks both fields and the color; `total` is what they make together, per channel.
     pub fn check(self, color: Rgb, total: Rgb) -> Result<(), InvalidLight> {
         let Self { name, value, power } = self;
-        either("power", power.is_some(), name, value.is_some())?;
+        either(("power", power.is_some()), (name, value.is_some()))?;
         color.to_array().iter().try_for_each(|v| in_range("color", *v, 0.0, f32::MAX))?;
         let field = if power.is_some() { "power" } else { name };
         in_range(field, power.or(value).unwrap_or(0.0), 0.0, f32::MAX)?;
