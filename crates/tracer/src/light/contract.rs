@@ -19,7 +19,7 @@ fn place(from: Vec3, sample: &LightSample) -> Vec3 {
 #[test]
 fn samples_are_finite_and_unit_wherever_they_are_asked() {
     let mut random = Random::new(91);
-    for light in AnyLight::examples() {
+    for light in ready() {
         light.check().unwrap();
         assert!(light.ambient().is_finite() && light.shadow_samples() >= 1);
         for size in [0.0, 1e-30, 1e-3, 1.0, 300.0, 1e6, 1e18, 1e30] {
@@ -37,6 +37,13 @@ fn samples_are_finite_and_unit_wherever_they_are_asked() {
     }
 }
 
+/// The examples as a world holds them.
+fn ready() -> Vec<AnyLight> {
+    let mut lights = AnyLight::examples();
+    lights.iter_mut().for_each(|light| light.prepare());
+    lights
+}
+
 /// The flux of a light that states it, its color's luminance counted.
 fn watts(light: &AnyLight) -> Option<f32> {
     let (power, color) = match light {
@@ -51,21 +58,21 @@ fn watts(light: &AnyLight) -> Option<f32> {
 #[test]
 fn power_is_the_integral_over_directions() {
     let mut random = Random::new(92);
-    for (light, centre) in AnyLight::examples().into_iter().filter_map(|light| match &light {
+    for (mut light, centre) in AnyLight::examples().into_iter().filter_map(|light| match &light {
         AnyLight::Point(point) => Some((light.clone(), point.position)),
         AnyLight::Spot(spot) => Some((light.clone(), spot.position)),
         AnyLight::Area(area) => Some((light.clone(), area.position)),
         _ => None,
     }) {
-        let (radius, count) = (50.0f32, 200_000);
-        let mut sum = 0.0;
+        let (radius, count, watts) = (50.0f32, 200_000, watts(&light));
+        light.prepare();
+        let (stated, mut sum) = (f64::from(light.power(radius)), 0.0);
         for _ in 0..count {
             let from = centre + warp::uniform_sphere(random.vec2()) * radius;
             sum += light.sample(from, random.vec2()).map_or(0.0, |sample| f64::from(sample.radiance.luminance()));
         }
         let power = sum / f64::from(count) * f64::from(warp::UNIFORM_SPHERE_PDF.recip() * radius * radius);
-        let stated = f64::from(light.power(radius));
-        if let Some(watts) = watts(&light) {
+        if let Some(watts) = watts {
             assert!((stated / f64::from(watts) - 1.0).abs() < 1e-3, "{light:?}: {stated}");
         }
         assert!((power / stated - 1.0).abs() < 0.02, "{light:?}: {power} {stated}");
@@ -160,7 +167,7 @@ fn penumbra_of_a_sphere_is_a_cap() {
 fn bounds_hold_all_light() {
     use crate::emitter::LightTree;
     let mut random = Random::new(96);
-    for light in AnyLight::examples() {
+    for light in ready() {
         assert_eq!(light.bounds(9.0).is_some(), light.ball().is_some());
         let Some(bounds) = light.bounds(9.0) else { continue };
         let tree = LightTree::build(&[bounds]);
