@@ -21,6 +21,7 @@ pub struct Stats<'s> {
     samples_per_pixel: Option<Spread>,
     threads: usize,
     integrator: &'s str,
+    integrator_reason: String,
     seconds: Seconds,
     rays: RayCounts,
     geometry: Geometry,
@@ -112,7 +113,8 @@ impl<'s> Stats<'s> {
             samples: outcome.samples.max,
             samples_per_pixel: (*picture.limit() != Limit::Samples).then_some(outcome.samples),
             threads,
-            integrator: picture.compiled().settings.integrator.name(),
+            integrator: picture.integrator().name(),
+            integrator_reason: picture.compiled().integrator.reason.to_string(),
             seconds,
             rays: RayCounts {
                 camera: rays.camera,

@@ -16,7 +16,7 @@ fn main() -> Result<(), Error> {
             "main",
             Perspective { eye: vec3(0.0, 2.0, 6.0), look_at: vec3(0.0, 1.0, 0.0).into(), ..Default::default() },
         )
-        .light(Point { position: vec3(4.0, 6.0, 4.0), intensity: 60.0, ..Point::default() })
+        .light(Point { position: vec3(4.0, 6.0, 4.0), intensity: Some(60.0), ..Point::default() })
         .background(Rgb::new(0.3, 0.5, 0.9))
         .add(Object::new(Plane::default()).material(floor))
         .add(Object::new(Sphere { radius: 1.0 }).at(0.0, 1.0, 0.0).material(mirror));

@@ -6,10 +6,10 @@ use juggler_film::counts::Spread;
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
 use juggler_math::{Image, Rgb, UVec2};
 use juggler_scene::description::Render;
-use juggler_scene::{Compiled, Fingerprint, Scene, SceneError};
+use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
 use juggler_tracer::camera::{AnyCamera, Perspective, Shot};
 use juggler_tracer::film::{Digest, Filter, Rect, Summary};
-use juggler_tracer::integrator::Clamp;
+use juggler_tracer::integrator::{AnyIntegrator, Clamp};
 use juggler_tracer::render::{self, BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
 use juggler_tracer::world::{SimdLevel, World};
 use std::path::Path;
@@ -40,7 +40,7 @@ pub struct Picture {
 pub struct View {
     /// From where.
     pub camera: AnyCamera,
-    /// Size, samples, integrator and the like.
+    /// Size, samples, integrator and the like; without an integrator the picture keeps its own.
     pub render: Render,
     /// From linear light to what files keep.
     pub tone: Tone,
@@ -79,7 +79,8 @@ impl Picture {
     }
 
     /// `scene` is as it is wished for, and `compiled` what became of it; `plain` is what it was.
-    fn of(plain: &Scene, scene: &Scene, settings: &Settings, compiled: Compiled) -> Result<Self, Error> {
+    fn of(plain: &Scene, scene: &Scene, settings: &Settings, mut compiled: Compiled) -> Result<Self, Error> {
+        compiled.integrator.reason = reason(plain, settings);
         let [width, height] = scene.description.render.size;
         let region = settings.region([width, height])?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
@@ -102,14 +103,15 @@ impl Picture {
         let camera = self.compiled.cameras.first().map(|(_, camera)| camera.clone());
         View {
             camera: camera.unwrap_or_else(|| Perspective::default().into()),
-            render: self.compiled.settings.clone(),
+            render: Render { integrator: Some(self.integrator().clone()), ..self.compiled.settings.clone() },
             tone: self.tone.clone(),
         }
     }
 
     /// The same world looked at otherwise: all of it, until its samples are there. The camera's name stays. Layers that tell where
     /// things go are those of a camera that stands still.
-    pub fn seen(&self, view: View) -> Result<Self, Error> {
+    pub fn seen(&self, mut view: View) -> Result<Self, Error> {
+        let integrator = view.render.integrator.get_or_insert_with(|| self.integrator().clone()).clone();
         let mut scene = Scene::new();
         let description = &mut scene.description;
         (description.render, description.tone) = (view.render.clone(), view.tone.clone());
@@ -136,6 +138,9 @@ impl Picture {
         picture.of_scene.set_camera(&view.camera, &picture.compiled.course);
         picture.fingerprint = picture.of_scene.clone();
         picture.compiled.settings = view.render;
+        if integrator != *self.integrator() {
+            picture.compiled.integrator = IntegratorChoice { integrator, reason: IntegratorReason::Settings };
+        }
         picture.complete_fingerprint();
         Ok(picture)
     }
@@ -147,7 +152,7 @@ impl Picture {
             && self.region == other.region
             && (a.camera, a.pattern, a.seed) == (b.camera, b.pattern, b.seed)
             && a.filter == b.filter
-            && self.compiled.settings.integrator == other.compiled.settings.integrator
+            && self.integrator() == other.integrator()
             && (a.samples == 1) == (b.samples == 1)
             && a.layers == b.layers
     }
@@ -184,6 +189,11 @@ impl Picture {
     /// What can be seen.
     pub fn world(&self) -> &Arc<World> {
         &self.compiled.world
+    }
+
+    /// The integrator that makes it; [`Compiled::integrator`] says why.
+    pub fn integrator(&self) -> &AnyIntegrator {
+        &self.compiled.integrator.integrator
     }
 
     /// World, cameras and settings.
@@ -236,7 +246,7 @@ impl Picture {
         if self.limit == Limit::Samples {
             metadata.push(text("Samples", &self.samples().to_string()));
         }
-        if let Some(Clamp { direct, indirect }) = self.compiled.settings.integrator.clamp() {
+        if let Some(Clamp { direct, indirect }) = self.integrator().clamp() {
             let limits =
                 [("direct", direct), ("indirect", indirect)].into_iter().filter(|(_, limit)| limit.is_finite());
             let limits: Vec<String> = limits.map(|(light, limit)| format!("{light} light at {limit}")).collect();
@@ -270,7 +280,7 @@ impl Picture {
         Job {
             world: &self.compiled.world,
             camera: &self.shot,
-            integrator: &*settings.integrator,
+            integrator: &**self.integrator(),
             filter: settings.filter.filter(samples),
             pattern: settings.sampler.pattern(of_stream),
             samples,
@@ -356,6 +366,11 @@ pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>
     let picture = Picture::new(scene, settings)?;
     let writer = juggler_imaging::create(path, format, &picture.header(Options::default()))?;
     picture.write(writer, &Control::default())
+}
+
+/// Why a scene is rendered with its integrator, with these settings beside it.
+fn reason(scene: &Scene, settings: &Settings) -> IntegratorReason {
+    if settings.integrator.is_some() { IntegratorReason::Settings } else { scene.integrator().reason }
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 use crate::kinds::{by_name, check_name};
 use crate::{Aov, Denoiser, Error};
 use juggler_imaging::{Primaries, Tone, WhiteBalance};
-use juggler_scene::Scene;
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::kind::name_of;
+use juggler_scene::{IntegratorChoice, Scene};
 use juggler_tracer::film::{BLOCK, Rect};
 use juggler_tracer::integrator::AnyIntegrator;
 use juggler_tracer::render::Stop;
@@ -107,24 +107,28 @@ impl Settings {
             check_name("camera", name, single.chain(description.cameras.keys().map(String::as_str)))?;
             description.render.camera = Some(CameraName(name.clone()));
         }
+        if self.max_depth.is_some() && self.integrator.is_none() {
+            description.render.integrator = Some(IntegratorChoice::of(description).integrator);
+        }
         self.apply_to(&mut description.render, &mut description.tone)?;
         Ok(scene)
     }
 
-    /// The same for a scene's settings and tone alone; cameras are left.
+    /// The same for a scene's settings and tone alone; cameras are left. A wish for a depth needs `render.integrator`.
     pub fn apply_to(&self, render: &mut Render, tone: &mut Tone) -> Result<(), Error> {
         render.size = self.size.unwrap_or(render.size);
         render.samples = self.samples.unwrap_or(self.limit.most(render.samples));
         render.shutter = self.shutter.unwrap_or(render.shutter);
         render.seed = self.seed.unwrap_or(render.seed);
-        if let Some(name) = self.integrator.as_deref().filter(|name| *name != render.integrator.name()) {
-            render.integrator = by_name("integrator", name)?;
+        let named = render.integrator.as_ref().map(AnyIntegrator::name);
+        if let Some(name) = self.integrator.as_deref().filter(|name| Some(*name) != named) {
+            render.integrator = Some(by_name("integrator", name)?);
         }
         if let Some(name) = self.sampler.as_deref().filter(|name| *name != name_of(&render.sampler)) {
             render.sampler = by_name("sampler", name)?;
         }
-        if let Some(depth) = self.max_depth {
-            limit_depth(&mut render.integrator, depth)?;
+        if let (Some(depth), Some(integrator)) = (self.max_depth, &mut render.integrator) {
+            limit_depth(integrator, depth)?;
         }
         if let Some(name) = &self.curve {
             tone.curve = by_name("tone curve", name)?;
@@ -184,7 +188,7 @@ mod tests {
 
     fn scene() -> Scene {
         let mut scene = Scene::new().size(20, 10);
-        scene.description.render.integrator = Classic { min_weight: 0.5, ..Classic::default() }.into();
+        scene.description.render.integrator = Some(Classic { min_weight: 0.5, ..Classic::default() }.into());
         scene
     }
 
@@ -193,14 +197,14 @@ mod tests {
         assert_eq!(Settings::default().apply(&scene()).unwrap().description, scene().description);
         let own = Settings { integrator: Some("classic".into()), max_depth: Some(3), ..Settings::default() };
         let expected = Classic { min_weight: 0.5, max_depth: 3, ..Classic::default() };
-        assert_eq!(own.apply(&scene()).unwrap().description.render.integrator, expected.into());
+        assert_eq!(own.apply(&scene()).unwrap().description.render.integrator, Some(expected.into()));
     }
 
     #[test]
     fn another_integrator_comes_with_its_defaults() {
         let other = Settings { integrator: Some("normals".into()), ..Settings::default() };
         let scene = other.apply(&scene()).unwrap();
-        assert_eq!(scene.description.render.integrator, Normals::default().into());
+        assert_eq!(scene.description.render.integrator, Some(Normals::default().into()));
         let deep = Settings { max_depth: Some(3), ..other };
         assert!(deep.apply(&scene).unwrap_err().to_string().contains("normals"));
     }

@@ -7,6 +7,7 @@
 
 use crate::compile::{Files, light_files, pictures};
 use crate::description::{Description, Object};
+use crate::integrator::IntegratorChoice;
 use crate::path::Path;
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::shape::AnyShape;
@@ -32,6 +33,7 @@ impl Fingerprint {
         bare.animation = Default::default();
         bare.tone = Default::default();
         bare.render.samples = 0;
+        bare.render.integrator = Some(IntegratorChoice::of(scene).integrator);
         bare.camera = camera_of(scene).cloned();
         bare.cameras.clear();
         bare.render.camera = None;

@@ -4,6 +4,7 @@ use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Need
 use crate::description::{Animation, Description};
 use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
+use crate::integrator::IntegratorChoice;
 use crate::moments::Moments;
 use crate::named::Unknown;
 use crate::path::Path as ScenePath;
@@ -205,7 +206,7 @@ impl Scene {
     /// [`Scene::has_world_of`].
     pub fn compile_with(&self, earlier: &Compiled) -> Result<Compiled, SceneError> {
         let (moments, wrong) = self.moments();
-        let (cameras, course, findings) = compile::look_at(&self.description, &moments, &earlier.world);
+        let (cameras, course, findings) = compile::look_at(&self.description, &moments, &earlier.bounds);
         let findings = joined(joined(self.own_findings(), wrong), findings);
         let broken = findings.iter().any(Finding::is_error);
         let warnings = self.report(findings);
@@ -213,7 +214,8 @@ impl Scene {
             return Err(SceneError::Problems(warnings));
         }
         let settings = self.description.render.clone();
-        Ok(Compiled { cameras, course, settings, warnings, ..earlier.clone() })
+        let integrator = self.integrator();
+        Ok(Compiled { cameras, course, settings, integrator, warnings, ..earlier.clone() })
     }
 
     /// Whether the same stands in both, however it is looked at. Files are compared by their contents.
@@ -228,6 +230,8 @@ impl Scene {
         };
         (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
             && a.background_light_group == b.background_light_group
+            // What a scene without lights is lit by hangs on the integrator.
+            && (!a.lights.is_empty() || self.integrator().follows_paths() == other.integrator().follows_paths())
             && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
             && digests(a, &self.files()) == digests(b, &other.files())
             && same_motion()
@@ -249,6 +253,12 @@ impl Scene {
         let lights = light_files(scene, &files).into_iter().map(|(file, _)| file);
         let files: BTreeSet<PathBuf> = mesh_files(scene, &files).into_iter().chain(pictures).chain(lights).collect();
         texts.map(PathBuf::from).chain(files).collect()
+    }
+
+    /// The integrator that the scene is rendered with, and why: the one that it names, or the one that fits what it
+    /// holds.
+    pub fn integrator(&self) -> IntegratorChoice {
+        IntegratorChoice::of(&self.description)
     }
 
     /// What building the world will need memory for; no file is read for it.

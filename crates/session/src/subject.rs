@@ -226,6 +226,7 @@ impl Subject {
             settings.max_depth = None;
         }
         let (mut render, mut tone) = (self.scene.description.render.clone(), self.scene.description.tone.clone());
+        render.integrator.get_or_insert_with(|| self.scene.integrator().integrator);
         settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error))?;
         render.camera = self.picture.view().render.camera;
         self.see(View { camera: self.picture.view().camera, render, tone })?;
@@ -350,8 +351,8 @@ impl Subject {
         self.name.clone_into(&mut status.scene);
         status.size = render.size;
         status.samples_wanted = render.samples;
-        status.integrator = render.integrator.name().to_owned();
-        status.max_depth = match &render.integrator {
+        status.integrator = self.picture.integrator().name().to_owned();
+        status.max_depth = match self.picture.integrator() {
             AnyIntegrator::Classic(classic) => Some(classic.max_depth),
             _ => None,
         };

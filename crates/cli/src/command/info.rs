@@ -103,7 +103,7 @@ fn to_words(name: &str, scene: &Scene, compiled: &Compiled) -> String {
     }
     let mut row = |key: &str, value: String| lines.push(row(key, &value));
     row("picture", format!("{width}x{height}, {}", counted(settings.samples.into(), "sample")));
-    row("integrator", settings.integrator.name().into());
+    row("integrator", format!("{}, {}", compiled.integrator.integrator.name(), compiled.integrator.reason));
     row("shapes", geometry.shapes.to_string());
     row("triangles", triangles_in_words(&geometry));
     if geometry.instances > 0 {
@@ -179,7 +179,8 @@ fn to_json(name: &str, scene: &Scene, compiled: &Compiled) -> String {
         "description": description.description,
         "size": settings.size,
         "samples": settings.samples,
-        "integrator": settings.integrator.name(),
+        "integrator": compiled.integrator.integrator.name(),
+        "integrator_reason": compiled.integrator.reason.to_string(),
         "geometry": {
             "shapes": geometry.shapes,
             "triangles": geometry.triangles,

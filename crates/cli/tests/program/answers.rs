@@ -87,7 +87,13 @@ fn what_is_in_a_scene() {
     );
     fs::write(folder.path("emitting.json"), format!(r#"{{"version": 1, "objects": [{balls}]}}"#)).unwrap();
     assert!(folder.good("info emitting.json").stdout.contains("\nemitting     2 shapes\n"));
-    for said in ["background   solid, 0.2 0.3 0.5 on average\n", "far lights   solid 100 %\n"] {
+    let reason = "chosen because all lights and materials are of the classic kind";
+    assert_eq!((&json["integrator"], &json["integrator_reason"]), (&"classic".into(), &reason.into()));
+    for said in [
+        "background   solid, 0.2 0.3 0.5 on average\n",
+        "far lights   solid 100 %\n",
+        &format!("integrator   classic, {reason}\n"),
+    ] {
         assert!(words.contains(said), "{words}");
     }
     fs::write(

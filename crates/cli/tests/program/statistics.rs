@@ -22,6 +22,7 @@ fn the_keys_are_those_that_were_promised() {
             "samples",
             "threads",
             "integrator",
+            "integrator_reason",
             "seconds",
             "rays",
             "geometry",
@@ -39,6 +40,7 @@ fn the_keys_are_those_that_were_promised() {
     assert_eq!((&stats["version"], &stats["scene"], &stats["threads"]), (&1.into(), &"ball.json".into(), &2.into()));
     assert_eq!((&stats["size"], &stats["samples"]), (&serde_json::json!([16, 9]), &2.into()));
     assert_eq!((&stats["rays"]["camera"], &stats["integrator"]), (&(16 * 9 * 2).into(), &"classic".into()));
+    assert_eq!(stats["integrator_reason"], "chosen because all lights and materials are of the classic kind");
     let whole = stats["seconds"]["total"].as_f64().unwrap();
     let parts = ["load", "build", "render", "write"].map(|part| stats["seconds"][part].as_f64().unwrap());
     assert!(parts.iter().sum::<f64>() <= whole && parts.iter().all(|part| *part >= 0.0), "{}", stats["seconds"]);

@@ -150,7 +150,7 @@ impl Prober<'_> {
         let picture = self.picture();
         Fireflies {
             size: picture.size(),
-            integrator: picture.compiled().settings.integrator.name(),
+            integrator: picture.integrator().name(),
             samples: picture.samples(),
             count: found.outliers.len(),
             sure: None,

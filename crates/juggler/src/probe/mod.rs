@@ -134,7 +134,7 @@ impl<'s> Prober<'s> {
 
     /// Whether samples are followed along paths that can be told.
     fn follows_paths(&self) -> bool {
-        let integrator = &self.picture.compiled().settings.integrator;
+        let integrator = self.picture.integrator();
         matches!(integrator, AnyIntegrator::Path(_) | AnyIntegrator::Direct(_) | AnyIntegrator::Classic(_))
     }
 
@@ -180,7 +180,7 @@ impl<'s> Prober<'s> {
         Ok(Probe {
             pixel,
             size: self.picture.compiled().settings.size,
-            integrator: self.picture.compiled().settings.integrator.name(),
+            integrator: self.picture.integrator().name(),
             samples: job.samples,
             not_finite: spread.not_finite,
             mean: mean.to_array(),

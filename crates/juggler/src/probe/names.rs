@@ -58,7 +58,7 @@ impl<'p> Namer<'p> {
         let world = picture.world();
         let lamps = if lamps.len() == world.lamps().len() { lamps } else { Vec::new() };
         let names = Arc::clone(&picture.compiled().names);
-        let is_classic = matches!(picture.compiled().settings.integrator, AnyIntegrator::Classic(_));
+        let is_classic = matches!(picture.integrator(), AnyIntegrator::Classic(_));
         let has_ambient = is_classic && !world.ambient().is_black();
         Self { scene, world, names, apart, lamps, has_ambient, shapes: BTreeMap::new(), materials: BTreeMap::new() }
     }

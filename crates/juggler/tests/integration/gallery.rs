@@ -1,15 +1,16 @@
-//! The scenes of the gallery are without mistakes, show something, and are told of.
+//! The scenes of the gallery and of the lighting recipes are without mistakes, show something, and are told of.
 
 use juggler::scene::Scene;
 use juggler::tracer::render::Control;
 use juggler::{Picture, Settings};
 use std::path::{Path, PathBuf};
 
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/gallery");
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
 
-fn files() -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(FOLDER).unwrap().map(|entry| entry.unwrap().path());
+/// The scenes of a folder.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(Path::new(SCENES).join(folder)).unwrap().map(|entry| entry.unwrap().path());
     let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == "json")).collect();
     files.sort();
     files
@@ -17,7 +18,7 @@ fn files() -> Vec<PathBuf> {
 
 #[test]
 fn each_scene_shows_something() {
-    for file in files() {
+    for file in files("gallery").into_iter().chain(files("lighting")) {
         let name = file.display();
         let scene = Scene::load(&file).unwrap();
         let problems = scene.check();
@@ -32,12 +33,15 @@ fn each_scene_shows_something() {
 
 #[test]
 fn each_scene_is_told_of_with_its_picture() {
-    let text = std::fs::read_to_string(Path::new(DOCS).join("gallery.md")).unwrap();
-    let files = files();
-    assert!(files.len() >= 7);
-    for file in files {
-        let name = file.file_stem().unwrap().to_str().unwrap();
-        assert!(text.contains(&format!("scenes/gallery/{name}.json")), "{name} is not in docs/gallery.md");
-        assert!(Path::new(DOCS).join(format!("pictures/gallery/{name}.jpg")).exists(), "{name} has no picture");
+    for (folder, least) in [("gallery", 7), ("lighting", 5)] {
+        let page = format!("{folder}.md");
+        let text = std::fs::read_to_string(Path::new(DOCS).join(&page)).unwrap();
+        let files = files(folder);
+        assert!(files.len() >= least);
+        for file in files {
+            let name = file.file_stem().unwrap().to_str().unwrap();
+            assert!(text.contains(&format!("scenes/{folder}/{name}.json")), "{name} is not in docs/{page}");
+            assert!(Path::new(DOCS).join(format!("pictures/{folder}/{name}.jpg")).exists(), "{name} has no picture");
+        }
     }
 }

@@ -9,6 +9,7 @@
     reason = "a test fails by panicking and prints its figures"
 )]
 
+mod area_lights;
 mod building;
 mod cryptomatte;
 mod gallery;

@@ -1,5 +1,7 @@
 //! What a scene gets that says nothing: a camera that sees everything, and light to see it by.
 
+use crate::description::Description;
+use crate::integrator::{Holdings, IntegratorChoice};
 use juggler_math::{Aabb, Rgb, UVec2, Vec3, fun};
 use juggler_tracer::background::{AnyBackground, Solid};
 use juggler_tracer::camera::{AnyCamera, Perspective};
@@ -22,18 +24,32 @@ pub fn camera(bounds: &Aabb, size: UVec2) -> AnyCamera {
     Perspective { eye, look_at: center.into(), ..Perspective::default() }.into()
 }
 
-/// A soft light above the camera's shoulder, and a little light from everywhere.
-pub fn lights(bounds: &Aabb) -> Vec<AnyLight> {
+/// A soft light above the camera's shoulder, and for integrators that follow no paths a little light from everywhere;
+/// paths find that in the default background.
+pub fn lights(bounds: &Aabb, scene: &Description, integrator: &IntegratorChoice) -> Vec<AnyLight> {
     let (center, radius) = ball(bounds);
     let distance = radius * 4.0;
     let key = Point {
         position: center + TOWARDS_LIGHT.normalize() * distance,
         color: Rgb::WHITE,
-        intensity: 0.6 * distance * distance,
+        intensity: Some(0.6 * distance * distance * strength(scene, integrator)),
         extent: Some(Extent::Sphere { radius: 0.5 * radius }),
         ..Point::default()
     };
-    vec![key.into(), Ambient { intensity: 0.15, ..Ambient::default() }.into()]
+    let ambient = Ambient { intensity: 0.15, ..Ambient::default() };
+    let from_everywhere = (!integrator.follows_paths()).then(|| ambient.into());
+    [key.into()].into_iter().chain(from_everywhere).collect()
+}
+
+/// Factor on the default light, for the same look under every integrator: of a light without a surface, `phong` reflects π
+/// times as much as physical materials of the same color. A scene that has both gets the geometric mean.
+fn strength(scene: &Description, integrator: &IntegratorChoice) -> f32 {
+    let Holdings { physical, has_phong, .. } = Holdings::of(scene);
+    match (integrator.follows_paths() && physical.is_some(), has_phong) {
+        (false, _) => 1.0,
+        (true, true) => std::f32::consts::PI.sqrt(),
+        (true, false) => std::f32::consts::PI,
+    }
 }
 
 /// Black where the scene has its own light, else a soft grey.

@@ -1,5 +1,6 @@
 //! What belongs together, and its names: entries of the scene, materials, groups of lights.
 
+use super::areas;
 use crate::description::Description;
 use juggler_tracer::layer::LightGroup;
 use juggler_tracer::light::AnyLight;
@@ -12,7 +13,7 @@ pub const REST: &str = "rest";
 /// Names of what masks and layers tell apart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
-    /// How many entries the scene's `objects` are.
+    /// How many entries the scene has: its `objects`, then its area lights.
     pub entries: u32,
     /// Of each of them that has one, by number, rising.
     pub objects: Vec<(u32, String)>,
@@ -36,6 +37,12 @@ impl Names {
             }
         }
         Self { entries, objects: names.collect(), materials: Vec::new(), light_groups }
+    }
+
+    /// One more entry, behind those of the scene's `objects`.
+    pub(super) fn add_entry(&mut self, name: String) {
+        self.objects.push((self.entries, name));
+        self.entries = self.entries.saturating_add(1);
     }
 
     /// Of a material by number: its own, or its number.
@@ -67,9 +74,11 @@ impl Names {
 
     /// The same of all else that shines; `entries` are the first shapes of the scene's objects.
     pub fn labels(&self, scene: &Description, entries: Vec<u32>) -> Labels {
-        let any = scene.objects.iter().any(|object| object.light_group.is_some());
-        let of = if any { scene.objects.as_slice() } else { &[] };
-        let groups = of.iter().map(|object| self.group(object.light_group.as_deref())).collect();
+        let of_objects = scene.objects.iter().map(|object| object.light_group.as_deref());
+        let of_areas = areas::of(&scene.lights).map(|(_, area)| area.light_group.as_deref());
+        let groups: Vec<Option<&str>> = of_objects.chain(of_areas).collect();
+        let any = groups.iter().any(Option::is_some);
+        let groups = groups.into_iter().filter(|_| any).map(|group| self.group(group)).collect();
         Labels { entries, groups, background: self.group(scene.background_light_group.as_deref()) }
     }
 }

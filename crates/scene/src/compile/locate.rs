@@ -1,6 +1,7 @@
 //! From a shape's number back to the place where it is described. Nothing is kept for it: objects are counted in the
 //! order in which they are placed.
 
+use super::areas;
 use super::count::{self, Counts};
 use crate::description::{Description, Object};
 use crate::kind::name_of;
@@ -23,8 +24,20 @@ impl Part {
     pub fn of(scene: &Description, number: u32) -> Option<Self> {
         let counts = count::count(scene).ok()?;
         let search = Search { scene, counts };
-        search.among(&scene.objects, &Path::root().key("objects"), u64::from(number), "default".into())
+        let number = u64::from(number);
+        let objects: u64 = scene.objects.iter().map(|object| search.count(object)).sum();
+        if let Some(light) = number.checked_sub(objects) {
+            return area(scene, usize::try_from(light).ok()?);
+        }
+        search.among(&scene.objects, &Path::root().key("objects"), number, "default".into())
     }
+}
+
+/// An area light by its number among those: they stand behind all objects.
+fn area(scene: &Description, number: usize) -> Option<Part> {
+    let (light, area) = areas::of(&scene.lights).nth(number)?;
+    let path = Path::root().key("lights").index(light);
+    Some(Part { path: path.to_string(), kind: name_of(&area.shape), material: path.to_string() })
 }
 
 struct Search<'s> {
@@ -90,7 +103,8 @@ mod tests {
                 {"group": "two", "material": "red"},
                 {"chain": {"from": {"center": [0, 0, 0], "radius": 1}, "to": {"center": [9, 0, 0], "radius": 1}, "count": 3}},
                 {"objects": [{"shape": {"disk": {}}, "material": "blue"}]}
-            ]
+            ],
+            "lights": [{"point": {}}, {"area": {"shape": {"sphere": {"radius": 0.1}}, "power": 5}}]
         }"#;
         let scene = Scene::from_json(scene, "test.json").unwrap();
         let shapes = scene.compile().unwrap().world.geometry().shapes as u32;
@@ -108,6 +122,7 @@ mod tests {
             ["objects[2]", "sphere", "default"],
             ["objects[2]", "sphere", "default"],
             ["objects[3].objects[0]", "disk", "blue"],
+            ["lights[1]", "sphere", "lights[1]"],
         ];
         assert_eq!(parts, expected);
         assert_eq!(Part::of(&scene.description, shapes), None);

@@ -1,20 +1,23 @@
 //! Description → world: names looked up, groups placed, shapes prepared, gaps filled with defaults.
 
 use crate::description::{Description, Render};
+use crate::integrator::IntegratorChoice;
 use crate::path::Path;
 use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
-use juggler_tracer::integrator::AnyIntegrator;
+use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::MaterialTable;
 use juggler_tracer::world::{Labels, Lamp, Object, World};
 use std::sync::Arc;
 
+mod areas;
 mod count;
 mod course;
 mod defaults;
 mod emitting;
+mod facing;
 mod illuminance;
 mod images;
 mod labels;
@@ -48,8 +51,12 @@ pub struct Compiled {
     pub cameras: Vec<(String, AnyCamera)>,
     /// The first camera at even times from opening to closing of the shutter; nothing when it stays as it is.
     pub course: Vec<AnyCamera>,
-    /// Size, samples, integrator and the like.
+    /// Size, samples and the like, as the scene says.
     pub settings: Render,
+    /// What the scene is rendered with.
+    pub integrator: IntegratorChoice,
+    /// A box around all objects that have an end, area lights left out.
+    pub bounds: Aabb,
     /// What people should know about the scene.
     pub warnings: Problems,
     /// Names of what masks and layers tell apart.
@@ -78,6 +85,10 @@ pub struct Assembly {
     pub names: Names,
     /// As [`Compiled::illuminance`].
     pub illuminance: Option<Illuminance>,
+    /// As [`Compiled::integrator`].
+    pub integrator: IntegratorChoice,
+    /// As [`Compiled::bounds`].
+    pub bounds: Aabb,
 }
 
 impl Compiled {
@@ -99,74 +110,94 @@ impl Assembly {
     /// from opening to closing of the shutter; nothing when it does not change.
     pub fn of(scene: &Description, moments: &[Description], files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
+        let integrator = IntegratorChoice::of(scene);
         settings::check(&scene.render, &mut findings);
         let sources = lighting::lights(&scene.lights, files, &mut findings);
         settings::check_lights(scene, &sources, &mut findings);
+        settings::check_fit(scene, &integrator, &mut findings);
         let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
         let mut names = Names::of(scene);
-        let (objects, entries) = match count::count(scene) {
+        let mut placed = match count::count(scene) {
             Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
             Err(problems) => {
                 findings.extend(problems);
                 (Vec::new(), Vec::new())
             }
         };
-        let glows = materials.glows() || background.as_ref().is_some_and(|b| lights(scene, b));
+        let glows = materials.glows() || background.as_ref().is_some_and(|b| lights(&integrator, b));
         let lit = glows || !scene.lights.is_empty();
-        let bounds = bounds(&objects);
-        let farthest = farthest(&objects, &entries);
+        let (bounds, farthest) = (bounds(&placed.0), farthest(&placed.0, &placed.1));
+        areas::add(scene, moments, &mut materials, &mut names, &mut placed, &mut findings);
+        let (objects, entries) = placed;
         let (cameras, course) = cameras(scene, moments, &bounds, &farthest, &mut findings);
-        let mut lights: Vec<Lamp> = if lit {
-            // What is wrong with files has been said.
-            let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
-            course::lamps(&sources, &moments.iter().map(loaded).collect::<Vec<_>>())
+        let lights = if lit {
+            lamps(&sources, moments, files, &names)
         } else {
-            defaults::lights(&bounds).into_iter().map(Lamp::from).collect()
+            defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect()
         };
-        if lit {
-            names.mark(&mut lights, &sources);
-        }
         let illuminance = illuminance::at_the_middle(&lights, lit, &bounds);
-        if lit && !glows {
+        if lit && !glows && areas::of(&scene.lights).next().is_none() {
             findings.extend(illuminance::warning(scene, &lights, &bounds));
         }
         let labels = names.labels(scene, entries);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut names, &mut findings);
-        (Self { objects, materials, lights, background, cameras, course, labels, names, illuminance }, findings)
+        facing::Scenery { scene, objects: &objects, entries: &labels.entries, materials: &materials }
+            .check(&mut findings);
+        let assembly = Self {
+            objects,
+            materials,
+            lights,
+            background,
+            cameras,
+            course,
+            labels,
+            names,
+            illuminance,
+            integrator,
+            bounds,
+        };
+        (assembly, findings)
     }
 
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
-        let (cameras, course, names) = (self.cameras, self.course, Arc::new(self.names));
-        let illuminance = self.illuminance;
-        Compiled { world: Arc::new(world), cameras, course, settings, warnings, names, illuminance }
+        let Self { cameras, course, names, integrator, bounds, illuminance, .. } = self;
+        let (world, names) = (Arc::new(world), Arc::new(names));
+        Compiled { world, cameras, course, settings, integrator, bounds, warnings, names, illuminance }
     }
+}
+
+/// The scene's lights, which may change while the shutter is open.
+fn lamps(sources: &[AnyLight], moments: &[Description], files: Files<'_>, names: &Names) -> Vec<Lamp> {
+    // What is wrong with files has been said.
+    let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
+    let mut lamps = course::lamps(sources, &moments.iter().map(loaded).collect::<Vec<_>>());
+    names.mark(&mut lamps, sources);
+    lamps
 }
 
 /// Cameras by name, the chosen one first, and what that one does while the shutter is open.
 type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
 
-/// How a scene looks at its world, which is there already.
+/// How a scene looks at its world, which is there already; `bounds` are those of its objects.
 pub fn look_at(
     scene: &Description,
     moments: &[Description],
-    world: &World,
+    bounds: &Aabb,
 ) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
     let mut findings = Vec::new();
     settings::check(&scene.render, &mut findings);
-    let (cameras, course) =
-        cameras(scene, moments, &or_some(world.bounds()), &Path::root().key("objects"), &mut findings);
+    let (cameras, course) = cameras(scene, moments, bounds, &Path::root().key("objects"), &mut findings);
     (cameras, course, findings)
 }
 
 /// Whether a background lights the scene: panoramas and skies are made for it, and paths find every one.
-fn lights(scene: &Description, background: &AnyBackground) -> bool {
-    let follows_paths = matches!(scene.render.integrator, AnyIntegrator::Path(_) | AnyIntegrator::Direct(_));
+fn lights(integrator: &IntegratorChoice, background: &AnyBackground) -> bool {
     let is_light = matches!(background, AnyBackground::Environment(_) | AnyBackground::Sky(_));
-    is_light || follows_paths && !background.mean().is_black()
+    is_light || integrator.follows_paths() && !background.mean().is_black()
 }
 
 /// A box around all objects that have an end.

@@ -1,5 +1,6 @@
 //! What a scene will need memory for, told before its files are read and its world is built.
 
+use super::areas;
 use super::count::{count, stored};
 use super::emitting::emitters;
 use super::images::pictures;
@@ -39,9 +40,10 @@ impl Needs {
     /// Of a scene whose files lie there.
     pub fn of(scene: &Description, files: Files<'_>) -> Self {
         // Too many objects are refused when they are to be placed.
+        let areas = areas::of(&scene.lights).count() as u64;
         let counts = count(scene).ok();
-        let objects = counts.as_ref().map_or(0, |counts| stored(scene, counts));
-        let emitters = counts.as_ref().map_or(0, |_| emitters(scene));
+        let objects = counts.as_ref().map_or(0, |counts| stored(scene, counts).saturating_add(areas));
+        let emitters = counts.as_ref().map_or(0, |_| emitters(scene).saturating_add(areas));
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.origin.map_or(0, |(sources, _)| sources.bytes_to_read());
         let mut needs = Self { text, objects, emitters, shadows, ..Self::default() };

@@ -223,7 +223,7 @@ fn size(motion: &Motion, content: &Placed) -> f32 {
 }
 
 /// An object in its place, its turns round.
-fn placed(content: Placed, motion: Motion, material: Option<MaterialId>) -> world::Object {
+pub fn placed(content: Placed, motion: Motion, material: Option<MaterialId>) -> world::Object {
     let motion = if motion.moves() { motion.clone().smoothed(size(&motion, &content)) } else { motion };
     world::Object { content, motion, material }
 }

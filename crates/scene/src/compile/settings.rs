@@ -1,6 +1,7 @@
 //! Numbers that only here are known to be too many, and lights that cannot be.
 
 use crate::description::{Description, Render};
+use crate::integrator::{Holdings, IntegratorChoice};
 use crate::path::Path;
 use crate::report::Finding;
 use juggler_tracer::light::AnyLight;
@@ -51,6 +52,34 @@ pub fn check_lights(scene: &Description, lights: &[AnyLight], findings: &mut Vec
             let warning = Finding::warning("this light gives no light").at(path());
             findings.push(warning.help("raise its `intensity` or `color`, or remove it"));
         }
+    }
+}
+
+/// Warns of lights that the integrator makes nothing of.
+pub fn check_fit(scene: &Description, choice: &IntegratorChoice, findings: &mut Vec<Finding>) {
+    let name = choice.integrator.name();
+    let lights = Path::root().key("lights");
+    if choice.follows_paths() {
+        if let Some(i) = scene.lights.iter().position(|light| !light.ambient().is_black()) {
+            let message = format!("an `ambient` light lights nothing under `{name}`");
+            let help = "paths find light from everywhere in a background: \"background\": [0.1, 0.1, 0.1]";
+            findings.push(Finding::warning(message).at(lights.index(i)).help(help));
+        }
+        if let Some((i, light)) = scene.lights.iter().enumerate().find(|(_, light)| light.shadow_samples() > 1) {
+            let path = lights.index(i).key(crate::kind::name_of(light)).key("samples");
+            let message = format!("`samples` of a light has no effect under `{name}`");
+            findings.push(Finding::warning(message).at(path).help("raise `render.samples` for smoother shadows"));
+        }
+        return;
+    }
+    if !choice.is_classic() {
+        return;
+    }
+    let Holdings { emitter, sky, .. } = Holdings::of(scene);
+    // A sky behind lit things is a picture.
+    for part in emitter.into_iter().chain(sky.filter(|_| scene.lights.is_empty())) {
+        let warning = Finding::warning(format!("`{}` lights nothing under `classic`", part.kind)).at(part.path);
+        findings.push(warning.help("write \"integrator\": \"path\", or leave `integrator` out"));
     }
 }
 

@@ -81,8 +81,8 @@ pub struct Description {
     /// stored once.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub groups: IndexMap<String, Vec<Object>>,
-    /// The lights. A scene without any, without anything that glows and without a background that lights it (a panorama,
-    /// a sky, and to paths every one) is lit softly from above the camera.
+    /// The lights. A scene without lights, without emissive materials and without a background that lights it (an
+    /// `environment`, a `sky`, and under `path` every other) gets a soft light above the camera.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<AnyLight>,
     /// What is to be seen.

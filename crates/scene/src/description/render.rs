@@ -1,7 +1,7 @@
 //! How the picture is made.
 //!
 //! ```json
-//! {"render": {"size": [640, 360], "samples": 16, "seed": 0, "integrator": "classic"}}
+//! {"render": {"size": [640, 360], "samples": 16, "seed": 0, "integrator": "path"}}
 //! ```
 
 use juggler_tracer::film::AnyFilter;
@@ -30,8 +30,11 @@ pub struct Render {
     #[serde(skip_serializing_if = "is_instant")]
     #[schemars(inner(range(min = -1000, max = 1000)))]
     pub shutter: [f64; 2],
-    /// How light is followed.
-    pub integrator: AnyIntegrator,
+    /// How light is followed. Without it, `path` as soon as the scene holds anything that `classic` cannot light
+    /// by or shade: an `emissive` material, an `area` light, an `environment` or a `sky`, a medium, any
+    /// material but `phong` and what is made of it; else `classic`. `juggler info` says which, and why.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integrator: Option<AnyIntegrator>,
     /// How samples are spread.
     pub sampler: AnySampler,
     /// How samples make a pixel.
@@ -46,7 +49,7 @@ impl Default for Render {
             seed: 0,
             camera: None,
             shutter: [0.0, 0.0],
-            integrator: AnyIntegrator::default(),
+            integrator: None,
             sampler: AnySampler::default(),
             filter: AnyFilter::default(),
         }

@@ -11,6 +11,7 @@
 
 mod animation;
 mod built_in;
+mod defaults;
 mod format;
 mod images;
 mod import_files;

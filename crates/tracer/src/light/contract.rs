@@ -19,7 +19,7 @@ fn place(from: Vec3, sample: &LightSample) -> Vec3 {
 #[test]
 fn samples_are_finite_and_unit_wherever_they_are_asked() {
     let mut random = Random::new(91);
-    for light in AnyLight::examples() {
+    for light in ready() {
         light.check().unwrap();
         assert!(light.ambient().is_finite() && light.shadow_samples() >= 1);
         for size in [0.0, 1e-30, 1e-3, 1.0, 300.0, 1e6, 1e18, 1e30] {
@@ -37,22 +37,44 @@ fn samples_are_finite_and_unit_wherever_they_are_asked() {
     }
 }
 
+/// The examples as a world holds them.
+fn ready() -> Vec<AnyLight> {
+    let mut lights = AnyLight::examples();
+    lights.iter_mut().for_each(|light| light.prepare());
+    lights
+}
+
+/// The flux of a light that states it, its color's luminance counted.
+fn watts(light: &AnyLight) -> Option<f32> {
+    let (power, color) = match light {
+        AnyLight::Point(point) => (point.power, point.color),
+        AnyLight::Spot(spot) => (spot.power, spot.color),
+        AnyLight::Area(area) => (area.power, area.color),
+        _ => (None, Rgb::BLACK),
+    };
+    Some(power? * color.luminance())
+}
+
 #[test]
 fn power_is_the_integral_over_directions() {
     let mut random = Random::new(92);
-    for (light, centre) in AnyLight::examples().into_iter().filter_map(|light| match &light {
+    for (mut light, centre) in AnyLight::examples().into_iter().filter_map(|light| match &light {
         AnyLight::Point(point) => Some((light.clone(), point.position)),
         AnyLight::Spot(spot) => Some((light.clone(), spot.position)),
+        AnyLight::Area(area) => Some((light.clone(), area.position)),
         _ => None,
     }) {
-        let (radius, count) = (50.0f32, 200_000);
-        let mut sum = 0.0;
+        let (radius, count, watts) = (50.0f32, 200_000, watts(&light));
+        light.prepare();
+        let (stated, mut sum) = (f64::from(light.power(radius)), 0.0);
         for _ in 0..count {
             let from = centre + warp::uniform_sphere(random.vec2()) * radius;
             sum += light.sample(from, random.vec2()).map_or(0.0, |sample| f64::from(sample.radiance.luminance()));
         }
         let power = sum / f64::from(count) * f64::from(warp::UNIFORM_SPHERE_PDF.recip() * radius * radius);
-        let stated = f64::from(light.power(radius));
+        if let Some(watts) = watts {
+            assert!((stated / f64::from(watts) - 1.0).abs() < 1e-3, "{light:?}: {stated}");
+        }
         assert!((power / stated - 1.0).abs() < 0.02, "{light:?}: {power} {stated}");
     }
     assert_eq!(Directional::default().power(2.0), 4.0 * std::f32::consts::PI);
@@ -95,7 +117,7 @@ fn places_of_a_square_lie_on_it_evenly() {
 #[test]
 fn a_size_changes_directions_but_not_the_light_that_arrives() {
     let mut random = Random::new(94);
-    let hard = Point { position: Vec3::new(0.0, 9.0, 0.0), intensity: 7.0, ..Point::default() };
+    let hard = Point { position: Vec3::new(0.0, 9.0, 0.0), intensity: Some(7.0), ..Point::default() };
     for extent in [Extent::Sphere { radius: 2.0 }, Extent::Square { side: 3.0 }] {
         let soft = Point { extent: Some(extent), ..hard.clone() };
         let from = random.point(3.0);
@@ -145,7 +167,7 @@ fn penumbra_of_a_sphere_is_a_cap() {
 fn bounds_hold_all_light() {
     use crate::emitter::LightTree;
     let mut random = Random::new(96);
-    for light in AnyLight::examples() {
+    for light in ready() {
         assert_eq!(light.bounds(9.0).is_some(), light.ball().is_some());
         let Some(bounds) = light.bounds(9.0) else { continue };
         let tree = LightTree::build(&[bounds]);
@@ -192,6 +214,18 @@ fn says_what_is_wrong() {
         (r#"{"point": {"attenuation": {"linear": -1}}}"#, "attenuation.linear"),
         (r#"{"point": {"extent": {"sphere": {"radius": -1}}}}"#, "extent.sphere.radius"),
         (r#"{"spot": {"extent": {"square": {"side": 1e39}}}}"#, "extent.square.side"),
+        (r#"{"point": {"power": -1}}"#, "power"),
+        (r#"{"point": {"power": 5, "intensity": 1}}"#, "power"),
+        (r#"{"point": {"power": 1e38, "color": [1e38, 0, 0]}}"#, "power"),
+        (r#"{"spot": {"power": 5, "intensity": 1}}"#, "power"),
+        (r#"{"area": {"power": 5, "radiance": 1}}"#, "power"),
+        (r#"{"area": {"power": 1e38, "shape": {"disk": {"radius": 1e-10}}}}"#, "power"),
+        (r#"{"area": {"look_at": [0, 1, 0], "direction": [0, 1, 0]}}"#, "look_at"),
+        (r#"{"area": {"position": [0, 1, 0], "look_at": [0, 1, 0]}}"#, "look_at"),
+        (r#"{"area": {"direction": [0, 0, 0]}}"#, "direction"),
+        (r#"{"area": {"shape": {"rectangle": {"size": [1, 0]}}}}"#, "shape.rectangle.size"),
+        (r#"{"area": {"shape": {"sphere": {"radius": 1e39}}}}"#, "shape.sphere.radius"),
+        (r#"{"area": {"radiance": -1}}"#, "radiance"),
         (r#"{"spot": {"beam_degrees": 40}}"#, "cutoff_degrees"),
         (r#"{"spot": {"cutoff_degrees": 200}}"#, "cutoff_degrees"),
         (r#"{"spot": {"beam_exponent": -1}}"#, "beam_exponent"),

@@ -4,16 +4,19 @@ use crate::emitter::LightBounds;
 use juggler_math::{MAX_LIGHT, Rgb, Vec2, Vec3, range};
 
 mod ambient;
+mod area;
 mod directional;
 mod ies;
 mod photometry;
 mod point;
 mod source;
 mod spot;
+mod strength;
 
 #[cfg(test)]
 mod contract;
 
+pub use area::AreaShape;
 pub use ies::{Ies, Profile};
 pub use photometry::InvalidIes;
 pub use source::{Attenuation, Extent};
@@ -54,6 +57,13 @@ pub trait Light: Send + Sync {
     }
     /// Whether it shines from a single place or direction, so that [`Light::sample`] asks nothing of `u`.
     fn is_point(&self) -> bool;
+    /// Whether it is a surface, which paths meet and sample as a shape of the world; [`LightSample::radiance`] then is what
+    /// arrives in physical units.
+    fn is_surface(&self) -> bool {
+        false
+    }
+    /// Works out once what every sample would work out anew: an intensity from a power.
+    fn prepare(&mut self) {}
     /// Centre and radius of a ball that holds all places it shines from; `None` for one without a place.
     fn ball(&self) -> Option<(Vec3, f32)> {
         None
@@ -83,6 +93,7 @@ closed_set! {
     /// Every light. In JSON: `{"point": {"position": [0, 4, 0], "color": [1, 1, 1], "intensity": 60}}`.
     pub enum AnyLight: Light {
         ambient::Ambient,
+        area::Area,
         directional::Directional,
         point::Point,
         spot::Spot,
@@ -94,6 +105,7 @@ impl AnyLight {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Ambient(_) => "ambient",
+            Self::Area(_) => "area",
             Self::Directional(_) => "directional",
             Self::Point(_) => "point",
             Self::Spot(_) => "spot",
@@ -105,6 +117,12 @@ impl AnyLight {
 fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidLight> {
     let wrong = range::outside(field, value, low, high);
     wrong.map_or(Ok(()), |message| Err(InvalidLight { field, message }))
+}
+
+/// Refuses two fields that say the same.
+fn either((field, has): (&'static str, bool), (other, has_other): (&'static str, bool)) -> Result<(), InvalidLight> {
+    let message = || format!("`{field}` stands in place of `{other}`: write one of them, not both");
+    if has && has_other { Err(InvalidLight { field, message: message() }) } else { Ok(()) }
 }
 
 fn check_color(color: Rgb, intensity: f32) -> Result<(), InvalidLight> {

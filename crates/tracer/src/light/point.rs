@@ -5,14 +5,19 @@
 //!     "attenuation": {"constant": 1}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
 //! ```
 //!
+//! A light of radiant intensity I (watts per steradian) emits the radiant flux Φ = 4π I, so `power` gives I = Φ / 4π, times
+//! `color` per channel.
+//!
 //! With a photometric file it shines as a luminaire was measured: `"ies": {"file": "lamp.ies"}`.
 
 use super::source::{self, Attenuation, Extent};
-use super::{Ies, InvalidLight, Light, LightSample, check_color};
+use super::strength::Strength;
+use super::{Ies, InvalidLight, Light, LightSample};
 use crate::emitter::LightBounds;
 use juggler_math::{Rgb, Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f32::consts::PI;
 
 /// A light that shines the same in every direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,9 +28,16 @@ pub struct Point {
     pub position: Vec3,
     /// Its colour.
     pub color: Rgb,
-    /// Factor on the colour: what arrives at distance 1 with the default attenuation.
+    /// Radiant intensity in watts per steradian, a factor on the color: what arrives at distance 1 with the default
+    /// attenuation. 1 without it and without `power`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
-    pub intensity: f32,
+    pub intensity: Option<f32>,
+    /// Radiant flux in watts per channel, a factor on the color, instead of `intensity`: the intensity is
+    /// power / 4π. With a photometric file its distribution keeps the same flux.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1e30))]
+    pub power: Option<f32>,
     /// How its light falls off with distance.
     pub attenuation: Attenuation,
     /// A size, for soft shadows; without it shadows are hard.
@@ -47,7 +59,8 @@ impl Default for Point {
         Self {
             position: Vec3::ZERO,
             color: Rgb::WHITE,
-            intensity: 1.0,
+            intensity: None,
+            power: None,
             attenuation: Attenuation::default(),
             extent: None,
             samples: 1,
@@ -58,10 +71,23 @@ impl Default for Point {
 }
 
 impl Point {
+    /// Factor on the color.
+    fn intensity(&self) -> f32 {
+        self.power.map_or(self.intensity.unwrap_or(1.0), |power| {
+            let mean = self.mean_share();
+            if mean > 0.0 { power / (4.0 * PI * mean) } else { 0.0 }
+        })
+    }
+
+    /// Mean over all directions of the photometric file's factor.
+    fn mean_share(&self) -> f32 {
+        self.ies.as_ref().map_or(1.0, |ies| source::mean(|leaving| ies.share(leaving, Vec3::NEG_Y)))
+    }
+
     /// Power without a photometric file.
     fn reach(&self, world_radius: f32) -> f32 {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
-        4.0 * std::f32::consts::PI * at_radius * (self.color * self.intensity).luminance()
+        4.0 * PI * at_radius * (self.color * self.intensity()).luminance()
     }
 }
 
@@ -71,14 +97,15 @@ impl Light for Point {
     }
 
     fn check(&self) -> Result<(), InvalidLight> {
-        check_color(self.color, self.intensity)?;
+        let strength = Strength { name: "intensity", value: self.intensity, power: self.power };
+        strength.check(self.color, self.color * self.intensity())?;
         self.ies.as_ref().map_or(Ok(()), Ies::check)?;
         source::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
         let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
-        let mut radiance = self.color * (self.intensity * arrival.factor);
+        let mut radiance = self.color * (self.intensity() * arrival.factor);
         if let Some(ies) = &self.ies {
             radiance = radiance * ies.share(-arrival.towards_centre, Vec3::NEG_Y);
         }
@@ -88,6 +115,10 @@ impl Light for Point {
 
     fn shadow_samples(&self) -> u32 {
         if self.extent.is_some() { self.samples } else { 1 }
+    }
+
+    fn prepare(&mut self) {
+        (self.intensity, self.power) = (Some(self.intensity()), None);
     }
 
     fn is_point(&self) -> bool {
@@ -103,8 +134,7 @@ impl Light for Point {
     }
 
     fn power(&self, world_radius: f32) -> f32 {
-        let share = self.ies.as_ref().map_or(1.0, |ies| source::mean(|leaving| ies.share(leaving, Vec3::NEG_Y)));
-        self.reach(world_radius) * share
+        self.reach(world_radius) * self.mean_share()
     }
 
     fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
@@ -128,13 +158,15 @@ impl Point {
             attenuation: Attenuation { constant: 1.0, linear: 8e-5, quadratic: 8e-5 },
             extent: Some(Extent::Square { side: 15.0 }),
             color: Rgb::new(1.0, 0.5, 0.25),
-            intensity: 3.0,
+            intensity: Some(3.0),
+            power: None,
             samples: 16,
             ies: None,
             light_group: None,
         };
         let measured = Self { ies: Some(super::ies::tests::lamp()), ..Self::default() };
-        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured]
+        let bulb = Self { power: Some(60.0), ..measured.clone() };
+        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured, bulb]
     }
 }
 
@@ -160,6 +192,18 @@ mod tests {
                 assert!((sample.wi - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
             }
         }
+    }
+
+    #[test]
+    fn power_is_shared_by_all_directions() {
+        let bulb = Point { power: Some(100.0), color: Rgb::new(1.0, 0.5, 0.0), ..Point::default() };
+        let sample = bulb.sample(Vec3::new(0.0, 0.0, 2.0), Vec2::ZERO).unwrap();
+        let expected = 100.0 / (4.0 * PI) / 4.0;
+        assert!((sample.radiance.r / expected - 1.0).abs() < 1e-6 && sample.radiance.b == 0.0);
+        assert!((sample.radiance.g / sample.radiance.r - 0.5).abs() < 1e-6);
+        let mut ready = bulb.clone();
+        ready.prepare();
+        assert_eq!((ready.power, ready.sample(Vec3::Z, Vec2::ZERO)), (None, bulb.sample(Vec3::Z, Vec2::ZERO)));
     }
 
     #[test]

@@ -9,9 +9,14 @@
 //! `beam_degrees`, falls linearly with θ to nothing at `cutoff_degrees`, and is multiplied by
 //! max(0, cos θ)^`beam_exponent`. (The teaching engine's fall-off angle is the difference of the two; its first
 //! formula has an exponent of 1 and no edge: both angles 90.)
+//!
+//! With this falloff f, a light of radiant intensity I on its axis emits the radiant flux Φ = I ∫ f dω, so `power` gives
+//! I = Φ / ∫ f dω, the integral taken numerically; for a sharp cone of half angle c it is 2π (1 - cos c). (Blender keeps the
+//! intensity of the whole sphere when a cone cuts it; pbrt's `power` divides as is done here.)
 
 use super::source::{self, Attenuation, Extent};
-use super::{Ies, InvalidLight, Light, LightSample, check_color, check_direction, in_range};
+use super::strength::Strength;
+use super::{Ies, InvalidLight, Light, LightSample, check_direction, in_range};
 use crate::emitter::LightBounds;
 use juggler_math::{Rgb, Vec2, Vec3, fun};
 use schemars::JsonSchema;
@@ -29,9 +34,16 @@ pub struct Spot {
     pub direction: Vec3,
     /// Its colour.
     pub color: Rgb,
-    /// Factor on the colour: what arrives on the axis at distance 1 with the default attenuation.
+    /// Radiant intensity on the axis in watts per steradian, a factor on the color: what arrives there at distance 1
+    /// with the default attenuation. 1 without it and without `power`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1e30))]
-    pub intensity: f32,
+    pub intensity: Option<f32>,
+    /// Radiant flux of the whole cone in watts per channel, a factor on the color, instead of `intensity`: a
+    /// narrower cone of the same power is brighter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1e30))]
+    pub power: Option<f32>,
     /// How its light falls off with distance.
     pub attenuation: Attenuation,
     /// Angle from the axis up to which it shines in full, in degrees. Between `beam_degrees` and
@@ -66,7 +78,8 @@ impl Default for Spot {
             position: Vec3::ZERO,
             direction: Vec3::NEG_Y,
             color: Rgb::WHITE,
-            intensity: 1.0,
+            intensity: None,
+            power: None,
             attenuation: Attenuation::default(),
             beam_degrees: 25.0,
             cutoff_degrees: 30.0,
@@ -93,6 +106,29 @@ impl Spot {
         };
         if self.beam_exponent == 0.0 { edge } else { edge * fun::powf(cos.max(0.0), self.beam_exponent) }
     }
+
+    /// Factor on the color.
+    fn intensity(&self) -> f32 {
+        self.power.map_or(self.intensity.unwrap_or(1.0), |power| {
+            let integral = self.integral();
+            if integral > 0.0 { power / integral } else { 0.0 }
+        })
+    }
+
+    /// Integral over all directions of the share of light, in steradians.
+    fn integral(&self) -> f32 {
+        const STEPS: u16 = 512;
+        if let Some(ies) = &self.ies {
+            let axis = self.direction.normalize_or_zero();
+            let mean = source::mean(|leaving| self.share(leaving.dot(axis)) * ies.share(leaving, axis));
+            return 2.0 * std::f32::consts::TAU * mean;
+        }
+        // Over bands of equal solid angle within the cut-off, by midpoints.
+        let size = 1.0 - fun::cos(self.cutoff_degrees.to_radians());
+        let share = |i: u16| self.share(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
+        let mean = (0..STEPS).map(share).sum::<f32>() / f32::from(STEPS);
+        std::f32::consts::TAU * size * mean
+    }
 }
 
 impl Light for Spot {
@@ -101,19 +137,20 @@ impl Light for Spot {
     }
 
     fn check(&self) -> Result<(), InvalidLight> {
-        check_color(self.color, self.intensity)?;
         self.ies.as_ref().map_or(Ok(()), Ies::check)?;
         check_direction(self.direction)?;
         in_range("beam_degrees", self.beam_degrees, 0.0, 180.0)?;
         in_range("cutoff_degrees", self.cutoff_degrees, self.beam_degrees, 180.0)?;
         in_range("beam_exponent", self.beam_exponent, 0.0, f32::MAX)?;
+        let strength = Strength { name: "intensity", value: self.intensity, power: self.power };
+        strength.check(self.color, self.color * self.intensity())?;
         source::check(self.position, self.extent, &self.attenuation, self.samples)
     }
 
     fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
         let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
         let cos = -arrival.towards_centre.dot(self.direction.normalize_or_zero());
-        let mut radiance = self.color * (self.intensity * arrival.factor * self.share(cos));
+        let mut radiance = self.color * (self.intensity() * arrival.factor * self.share(cos));
         if let Some(ies) = &self.ies {
             radiance = radiance * ies.share(-arrival.towards_centre, self.direction);
         }
@@ -123,6 +160,10 @@ impl Light for Spot {
 
     fn shadow_samples(&self) -> u32 {
         if self.extent.is_some() { self.samples } else { 1 }
+    }
+
+    fn prepare(&mut self) {
+        (self.intensity, self.power) = (Some(self.intensity()), None);
     }
 
     fn is_point(&self) -> bool {
@@ -138,24 +179,14 @@ impl Light for Spot {
     }
 
     fn power(&self, world_radius: f32) -> f32 {
-        const STEPS: u16 = 512;
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
-        if let Some(ies) = &self.ies {
-            let axis = self.direction.normalize_or_zero();
-            let mean = source::mean(|leaving| self.share(leaving.dot(axis)) * ies.share(leaving, axis));
-            return 2.0 * std::f32::consts::TAU * mean * at_radius * (self.color * self.intensity).luminance();
-        }
-        // Over bands of equal solid angle within the cut-off, by midpoints.
-        let size = 1.0 - fun::cos(self.cutoff_degrees.to_radians());
-        let share = |i: u16| self.share(1.0 - size * (f32::from(i) + 0.5) / f32::from(STEPS));
-        let mean = (0..STEPS).map(share).sum::<f32>() / f32::from(STEPS);
-        std::f32::consts::TAU * size * mean * at_radius * (self.color * self.intensity).luminance()
+        self.integral() * at_radius * (self.color * self.intensity()).luminance()
     }
 
     fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
         let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
         let shares = self.ies.as_ref().map_or(1.0, Ies::greatest);
-        let power = 2.0 * std::f32::consts::TAU * shares * at_radius * (self.color * self.intensity).luminance();
+        let power = 2.0 * std::f32::consts::TAU * shares * at_radius * (self.color * self.intensity()).luminance();
         // Full up to the beam's angle, and something for the rest of the way to the cut-off.
         let beam = fun::cos(self.beam_degrees.to_radians());
         let edge = fun::cos((self.cutoff_degrees - self.beam_degrees).to_radians());
@@ -190,7 +221,8 @@ impl Spot {
             ..Self::default()
         };
         let measured = Self { ies: Some(super::ies::tests::lamp()), cutoff_degrees: 70.0, ..Self::default() };
-        vec![Self::default(), chess, cosine, measured]
+        let stage = Self { power: Some(100.0), beam_degrees: 10.0, cutoff_degrees: 25.0, ..Self::default() };
+        vec![Self::default(), chess, cosine, measured, stage]
     }
 }
 
@@ -234,5 +266,24 @@ mod tests {
         // Linear from b to c: 2π (1 - cos b + cos b - (sin c - sin b) / (c - b)).
         let (b, c) = (30f32.to_radians(), 90f32.to_radians());
         assert!((power(30.0, 90.0, 0.0) / (TAU * (1.0 - (fun::sin(c) - fun::sin(b)) / (c - b))) - 1.0).abs() < 1e-4);
+    }
+
+    /// Φ = I ∫ f dω: of a sharp cone 2π (1 - cos c), of a cosine over the half space π.
+    #[test]
+    fn power_is_shared_by_the_cone() {
+        let on_axis = |spot: &Spot| spot.sample(Vec3::NEG_Y, Vec2::ZERO).unwrap().radiance.g;
+        let power = Some(100.0);
+        for degrees in [5.0f32, 30.0, 90.0, 180.0] {
+            let spot = Spot { power, beam_degrees: degrees, cutoff_degrees: degrees, ..Spot::default() };
+            let solid_angle = std::f32::consts::TAU * (1.0 - fun::cos(degrees.to_radians()));
+            assert!((on_axis(&spot) * solid_angle / 100.0 - 1.0).abs() < 1e-4, "{degrees}: {}", on_axis(&spot));
+        }
+        let cosine = Spot { power, beam_degrees: 90.0, cutoff_degrees: 90.0, beam_exponent: 1.0, ..Spot::default() };
+        assert!((on_axis(&cosine) * std::f32::consts::PI / 100.0 - 1.0).abs() < 1e-4);
+        let shut = Spot { power, beam_degrees: 0.0, cutoff_degrees: 0.0, ..Spot::default() };
+        assert!(shut.check().is_ok() && shut.power(1.0) == 0.0);
+        let mut ready = cosine.clone();
+        ready.prepare();
+        assert_eq!((ready.power, on_axis(&ready)), (None, on_axis(&cosine)));
     }
 }

@@ -105,7 +105,8 @@ impl Emitters {
     pub fn new(lamps: &[Lamp], mut glowing: Vec<Glowing>, background: &AnyBackground, radius: f32) -> Self {
         let mut emitters = Self::default();
         let (mut bounds, mut far): (Vec<LightBounds>, Vec<(Far, f32)>) = (Vec::new(), Vec::new());
-        for (number, lamp) in (0..).zip(lamps) {
+        // Those with a surface stand among the shapes.
+        for (number, lamp) in (0..).zip(lamps).filter(|(_, lamp)| !lamp.is_surface) {
             match lamp.bounds(radius) {
                 Some(of_lamp) => {
                     emitters.finite.push(Emitter::Lamp(number));

@@ -12,6 +12,8 @@ pub struct Lamp {
     pub samples: u32,
     /// [`Light::is_point`](crate::light::Light::is_point).
     pub is_point: bool,
+    /// [`Light::is_surface`](crate::light::Light::is_surface).
+    pub is_surface: bool,
     /// Which group of lights it is of.
     pub group: LightGroup,
     /// Light from everywhere, in the mean of its time.
@@ -45,6 +47,7 @@ impl Lamp {
         Self {
             samples: all().map(|light| light.shadow_samples()).fold(1, u32::max),
             is_point: all().all(|light| light.is_point()),
+            is_surface: all().any(|light| light.is_surface()),
             group: LightGroup::REST,
             ambient: all().fold(Rgb::BLACK, |sum, light| sum + light.ambient()) / count,
             first: Source::new(first.clone()),
@@ -97,7 +100,8 @@ impl Lamp {
 }
 
 impl Source {
-    fn new(light: AnyLight) -> Self {
+    fn new(mut light: AnyLight) -> Self {
+        light.prepare();
         let ball = light.ball();
         Self { light, ball }
     }

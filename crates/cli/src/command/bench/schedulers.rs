@@ -141,7 +141,7 @@ fn mirrors(x: f32, y: f32) -> Scene {
     let scene = Scene::new()
         .camera("main", Perspective { eye, look_at: Some(vec3(0.0, 0.0, 0.0)), ..Perspective::default() })
         .background(Rgb::new(0.3, 0.5, 0.9))
-        .light(Point { position: eye, intensity: 400.0, ..Point::default() });
+        .light(Point { position: eye, intensity: Some(400.0), ..Point::default() });
     (0..125_u8).fold(scene, |scene, i| {
         let [right, up, back] = [i % 5, i / 5 % 5, i / 25].map(|step| f32::from(step) - 2.0);
         let ball = Object::new(Sphere { radius: 0.49 });

@@ -168,8 +168,10 @@ fn light(lamp: &Lamp, number: usize, seen: &Seen, sampler: &Sampler, emit: &mut 
     if !seen.phong.both_sides && source.is_below(seen.surface.point, seen.normal) {
         return;
     }
-    let Lamp { samples, is_point, .. } = lamp;
-    let share = 1.0 / *samples as f32;
+    let Lamp { samples, is_point, is_surface, .. } = lamp;
+    // Surfaces are measured in physical units.
+    let unit = if *is_surface { 1.0 / seen.phong.lamp_scale() } else { 1.0 };
+    let share = unit / *samples as f32;
     for i in 0..*samples {
         let u = if *is_point { Vec2::ZERO } else { sampler.part(i, *samples).next_2d() };
         let Some(sample) = source.light.sample(seen.surface.point, u) else { continue };

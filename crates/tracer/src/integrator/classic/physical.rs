@@ -74,8 +74,9 @@ impl Classic {
 impl Seen<'_> {
     /// What one light brings, from one or more places on it.
     fn light(&self, lamp: &Lamp, number: usize, sampler: &Sampler, emit: &mut Emit) {
-        let Lamp { samples, is_point, .. } = lamp;
-        let share = self.shade.lamp_scale / *samples as f32;
+        let Lamp { samples, is_point, is_surface, .. } = lamp;
+        let scale = if *is_surface { 1.0 } else { self.shade.lamp_scale };
+        let share = scale / *samples as f32;
         for i in 0..*samples {
             let u = if *is_point { Vec2::ZERO } else { sampler.part(i, *samples).next_2d() };
             let Some(sample) = lamp.at(self.time).light.sample(self.vertex.surface.point, u) else { continue };

@@ -1,0 +1,61 @@
+//! Area lights as objects of the world: shapes that emit, behind all objects of the scene, each an entry of its own.
+
+use super::labels::Names;
+use super::materials::Materials;
+use super::placing::placed;
+use crate::description::Description;
+use crate::path::Trail;
+use crate::report::Finding;
+use juggler_math::{Motion, Transform};
+use juggler_tracer::light::{AnyLight, Area};
+use juggler_tracer::material::{Emissive, MaterialRef, Sides};
+use juggler_tracer::world::{Content, Object};
+use std::sync::Arc;
+
+/// The world's objects, and of each entry of the scene the number of its first shape.
+pub type Entries = (Vec<Object>, Vec<u32>);
+
+/// The area lights of a list by their numbers in it.
+pub fn of(lights: &[AnyLight]) -> impl Iterator<Item = (usize, &Area)> {
+    lights.iter().enumerate().filter_map(|(i, light)| match light {
+        AnyLight::Area(area) => Some((i, area)),
+        _ => None,
+    })
+}
+
+/// Adds the scene's area lights to its objects, and names their entries `lights[i]`. Where `moments` say otherwise than
+/// the scene, they move; size and radiance stay. Area lights that are wrong have been reported.
+pub fn add(
+    scene: &Description,
+    moments: &[Description],
+    materials: &mut Materials,
+    names: &mut Names,
+    (objects, entries): &mut Entries,
+    findings: &mut Vec<Finding>,
+) {
+    let mut shapes: u64 = objects.iter().map(Object::shapes).sum();
+    let lights = Trail::Root.key("lights");
+    for (i, area) in of(&scene.lights) {
+        let Some((mut shape, place)) = area.placed() else { continue };
+        if shape.prepare().is_err() {
+            continue;
+        }
+        let emissive = Emissive { radiance: area.radiance().into(), sides: Sides::Front, ..Emissive::default() };
+        let material = materials.get(&MaterialRef::from(emissive), &lights.index(i), findings);
+        let motion = motion(moments, i).unwrap_or(place.into());
+        objects.push(placed(Content::Shape(Arc::new(shape)), motion, Some(material)));
+        names.add_entry(format!("lights[{i}]"));
+        entries.push(u32::try_from(shapes).unwrap_or(u32::MAX));
+        shapes = shapes.saturating_add(1);
+    }
+}
+
+/// Where a light is at even times; nothing for a light that stays.
+fn motion(moments: &[Description], light: usize) -> Option<Motion> {
+    let place = |at: &Description| match at.lights.get(light) {
+        Some(AnyLight::Area(area)) => area.placed().map(|(_, place)| place),
+        _ => None,
+    };
+    let keys: Option<Vec<Transform>> = moments.iter().map(place).collect();
+    Motion::through(keys.filter(|keys| !keys.is_empty())?)
+}

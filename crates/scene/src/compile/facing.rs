@@ -1,0 +1,185 @@
+//! Warns of flat emitters whose light goes nowhere: the front lies on another surface, or all that the scene holds is
+//! behind it. A rectangle that emits faces up unless it is turned, so the first ceiling light is often one of these.
+
+use super::areas;
+use crate::description::Description;
+use crate::path::Path;
+use crate::report::Finding;
+use juggler_math::{Aabb, Motion, Ray, Transform, Vec3};
+use juggler_tracer::camera::AnyCamera;
+use juggler_tracer::material::{MaterialId, MaterialTable, Sides};
+use juggler_tracer::shape::AnyShape;
+use juggler_tracer::world::{Content, Object};
+
+/// Most emitters that are looked at.
+const MOST_EMITTERS: usize = 64;
+/// Most pairs of an emitter and an object that are looked at.
+const MOST_PAIRS: usize = 4_000_000;
+/// A surface in front is at no distance when it is nearer than this share of the emitter's size.
+const TOUCHING: f32 = 0.01;
+
+/// A flat surface that emits from its front alone.
+struct Emitter {
+    /// Its place among the objects.
+    place: usize,
+    /// Number of its shape.
+    number: u32,
+    kind: &'static str,
+    center: Vec3,
+    /// Unit normal of the front.
+    normal: Vec3,
+    /// Points of the surface.
+    points: [Vec3; 5],
+    /// The shorter edge, or the diameter.
+    size: f32,
+}
+
+/// What there is to be lit.
+pub struct Scenery<'s> {
+    pub scene: &'s Description,
+    pub objects: &'s [Object],
+    /// Of each entry of the scene the number of its first shape.
+    pub entries: &'s [u32],
+    pub materials: &'s MaterialTable,
+}
+
+impl Emitter {
+    fn of(place: usize, number: u32, object: &Object, materials: &MaterialTable) -> Option<Self> {
+        let (Content::Shape(shape), Motion::Still(transform)) = (&object.content, &object.motion) else { return None };
+        let (kind, x, z) = match &**shape {
+            AnyShape::Rectangle(rectangle) => ("rectangle", 0.5 * rectangle.size[0], 0.5 * rectangle.size[1]),
+            AnyShape::Disk(disk) if disk.inner_radius == 0.0 => ("disk", disk.radius, disk.radius),
+            _ => return None,
+        };
+        materials.glow(object.material?).filter(|glow| glow.sides == Sides::Front)?;
+        let (x, z) = (Vec3::X * x, Vec3::Z * z);
+        let points = [Vec3::ZERO, x * 0.7, x * -0.7, z * 0.7, z * -0.7].map(|point| transform.point(point));
+        let size = 2.0 * transform.vector(x).length().min(transform.vector(z).length());
+        let normal = transform.normal(Vec3::Y);
+        Some(Self { place, number, kind, center: transform.origin(), normal, points, size })
+    }
+
+    /// Smallest distance that is told apart from none.
+    fn slack(&self) -> f32 {
+        1e-4 * self.size + 1e-5 * self.center.abs().max_element()
+    }
+
+    /// The first object that lies on the front, if the front is covered.
+    fn cover(&self, scenery: &Scenery<'_>) -> Option<usize> {
+        let covers = |point: &Vec3| scenery.others(self).find(|(_, object)| self.is_on(*point, object, scenery));
+        let mut first = None;
+        for point in &self.points {
+            let (place, _) = covers(point)?;
+            first = first.or(Some(place));
+        }
+        first
+    }
+
+    /// Whether an object's surface lies on the front at this point.
+    fn is_on(&self, point: Vec3, object: &Object, scenery: &Scenery<'_>) -> bool {
+        let Content::Shape(shape) = &object.content else { return false };
+        let reach = self.size * TOUCHING + self.slack();
+        let bounds = object.bounds();
+        let is_near = bounds.is_empty() || bounds.grown(reach).contains(point);
+        if !is_near || object.material.is_none_or(|id| scenery.lets_light_through(id)) {
+            return false;
+        }
+        let ray = Ray::new(point - self.normal * self.slack(), self.normal).up_to(reach + self.slack());
+        shape.intersect(&object.motion.at(0.0).ray_to_local(&ray)).is_some()
+    }
+
+    /// Whether nothing that could be lit, and no camera, is in front.
+    fn shines_away(&self, scenery: &Scenery<'_>) -> bool {
+        let is_ahead = |point: Vec3| (point - self.center).dot(self.normal) > self.slack();
+        let eye = |camera: &AnyCamera| camera.axes().is_ok_and(|axes| is_ahead(axes.eye));
+        let mut others = scenery.others(self).peekable();
+        others.peek().is_some()
+            && !others.any(|(_, object)| match plane(object) {
+                Some(plane) => plane.normal(Vec3::Y).dot(self.normal).abs() < 0.9999 || is_ahead(plane.origin()),
+                None => object.bounds().is_empty() || corners(&object.bounds()).into_iter().any(is_ahead),
+            })
+            && !scenery.scene.camera.iter().chain(scenery.scene.cameras.values()).any(eye)
+    }
+}
+
+impl Scenery<'_> {
+    /// Adds a warning for each flat emitter whose light goes nowhere.
+    pub fn check(&self, findings: &mut Vec<Finding>) {
+        let most = (MOST_PAIRS / self.objects.len().max(1)).clamp(1, MOST_EMITTERS);
+        let mut number = 0u64;
+        let numbered = self.objects.iter().enumerate().map(|(place, object)| {
+            let first = number;
+            number = number.saturating_add(object.shapes());
+            (place, u32::try_from(first).unwrap_or(u32::MAX), object)
+        });
+        let emitters =
+            numbered.filter_map(|(place, number, object)| Emitter::of(place, number, object, self.materials));
+        for emitter in emitters.take(most).collect::<Vec<_>>() {
+            findings.extend(self.warning(&emitter));
+        }
+    }
+
+    fn warning(&self, emitter: &Emitter) -> Option<Finding> {
+        let Emitter { kind, normal, .. } = emitter;
+        let path = self.path(emitter.number);
+        let [x, y, z] = normal.to_array().map(|axis| (axis * 1e3).round() / 1e3 + 0.0);
+        if let Some(cover) = emitter.cover(self) {
+            let number = self.objects.iter().take(cover).map(Object::shapes).sum::<u64>();
+            let other = self.path(u32::try_from(number).unwrap_or(u32::MAX));
+            let message =
+                format!("the front of this {kind}, which emits light along [{x}, {y}, {z}], lies on `{other}`");
+            let help = "its light goes nowhere: move it away from that surface, or turn it to the other side";
+            return Some(Finding::warning(message).at(path).help(help));
+        }
+        if !emitter.shines_away(self) {
+            return None;
+        }
+        let message = format!("this {kind} emits light along [{x}, {y}, {z}], away from everything in the scene");
+        let is_light = emitter.place >= self.objects.len().saturating_sub(areas::of(&self.scene.lights).count());
+        let help = if is_light {
+            "turn it with `direction` or `look_at`"
+        } else {
+            "turn it over, {\"rotate\": {\"axis\": [1, 0, 0], \"degrees\": 180}}, or write \"sides\": \"both\""
+        };
+        Some(Finding::warning(message).at(path).help(help))
+    }
+
+    /// All objects but the emitter.
+    fn others(&self, emitter: &Emitter) -> impl Iterator<Item = (usize, &Object)> {
+        let place = emitter.place;
+        self.objects.iter().enumerate().filter(move |(other, _)| *other != place)
+    }
+
+    fn lets_light_through(&self, id: MaterialId) -> bool {
+        self.materials.is_transparent(id) || self.materials.has_holes(id) || self.materials.interior(id).is_some()
+    }
+
+    /// Where the shape of that number is described: an entry of the scene's objects, or an area light behind them.
+    fn path(&self, shape: u32) -> Path {
+        let entry = self.entries.partition_point(|first| *first <= shape).saturating_sub(1);
+        let root = Path::root();
+        match entry.checked_sub(self.scene.objects.len()) {
+            None => root.key("objects").index(entry),
+            Some(area) => {
+                let light = areas::of(&self.scene.lights).nth(area).map_or(0, |(light, _)| light);
+                root.key("lights").index(light)
+            }
+        }
+    }
+}
+
+/// The place of an object that is a plane without end.
+fn plane(object: &Object) -> Option<&Transform> {
+    match (&object.content, &object.motion) {
+        (Content::Shape(shape), Motion::Still(transform)) => {
+            matches!(&**shape, AnyShape::Plane(_)).then_some(transform)
+        }
+        _ => None,
+    }
+}
+
+fn corners(bounds: &Aabb) -> [Vec3; 8] {
+    let pick = |i: usize, bit: usize, low: f32, high: f32| if i & bit == 0 { low } else { high };
+    let Aabb { min, max } = *bounds;
+    std::array::from_fn(|i| Vec3::new(pick(i, 1, min.x, max.x), pick(i, 2, min.y, max.y), pick(i, 4, min.z, max.z)))
+}

@@ -1,0 +1,203 @@
+//! What a scene gets that leaves things open: an integrator, lights, and warnings of lights that light nothing.
+
+use juggler_math::Vec3;
+use juggler_scene::compile::Part;
+use juggler_scene::{IntegratorReason, Scene};
+
+/// A scene of these members.
+fn scene(members: &str) -> Scene {
+    let separator = if members.is_empty() { "" } else { "," };
+    Scene::from_json(format!(r#"{{"version": 1{separator} {members}}}"#), "s.json").unwrap()
+}
+
+fn sphere(material: &str) -> String {
+    format!(r#""objects": [{{"shape": "sphere", "material": {material}}}]"#)
+}
+
+/// The warnings of a scene that has nothing worse: paths and messages.
+fn warnings(scene: &Scene) -> Vec<(String, String)> {
+    let problems = scene.check();
+    assert_eq!(problems.errors(), 0, "{problems}");
+    problems.list().iter().map(|problem| (problem.path.clone(), problem.message.clone())).collect()
+}
+
+#[test]
+fn scenes_of_the_classic_kind_stay_classic() {
+    for members in [
+        r#""objects": [{"shape": "sphere"}]"#,
+        r#""lights": [{"point": {}}, {"spot": {}}, {"directional": {}}, {"ambient": {}}], "objects": []"#,
+        r#""background": {"gradient": {}}, "objects": []"#,
+        r#""background": [0.2, 0.3, 0.4], "objects": []"#,
+        &sphere(r#"{"phong": {"emission": [1, 1, 1], "reflection": 0.5, "transparency": 0.5}}"#),
+        &sphere(r#"{"mix": {"a": {"phong": {}}, "b": {"checkerboard": {"even": {"phong": {}}, "odd": {"phong": {}}}}}}"#),
+        &sphere(r#"{"mask": {"material": {"phong": {}}, "opacity": 0.5}}"#),
+    ] {
+        let choice = scene(members).integrator();
+        assert_eq!((choice.integrator.name(), &choice.reason), ("classic", &IntegratorReason::Classic), "{members}");
+        assert_eq!(choice.reason.to_string(), "chosen because all lights and materials are of the classic kind");
+    }
+}
+
+#[test]
+fn what_classic_cannot_do_asks_for_paths() {
+    for (members, says) in [
+        (sphere(r#"{"emissive": {}}"#), "light a scene by `emissive`, which `objects[0].material` holds"),
+        (
+            r#""materials": {"lamp": {"emissive": {}}}, "objects": [{"shape": "sphere", "material": "lamp"}]"#.into(),
+            "light a scene by `emissive`, which `materials.lamp` holds",
+        ),
+        (
+            sphere(r#"{"mix": {"a": {"phong": {}}, "b": {"dielectric": {}}}}"#),
+            "shade a surface by `dielectric`, which `objects[0].material` holds",
+        ),
+        (sphere(r#"{"principled": {}}"#), "shade a surface by `principled`"),
+        (sphere(r#"{"boundary": {"medium": {"scattering": 0.1}}}"#), "shade a surface by `boundary`"),
+        (r#""background": {"sky": {}}, "objects": []"#.into(), "light a scene by `sky`, which `background` holds"),
+        (
+            r#""groups": {"pair": [{"objects": [{"shape": "cuboid", "material": {"diffuse": {}}}]}]}, "objects": []"#.into(),
+            "shade a surface by `diffuse`, which `groups.pair[0].objects[0].material` holds",
+        ),
+        (
+            r#""lights": [{"point": {}}, {"area": {}}], "materials": {"a": {"diffuse": {}}}, "objects": []"#.into(),
+            "light a scene by `area`, which `lights[1]` holds",
+        ),
+    ] {
+        let choice = scene(&members).integrator();
+        let reason = choice.reason.to_string();
+        assert_eq!(choice.integrator.name(), "path", "{members}");
+        assert!(reason.starts_with("chosen because `classic` cannot ") && reason.contains(says), "{reason}");
+        let named = scene(&format!(r#""render": {{"integrator": "classic"}}, {members}"#)).integrator();
+        assert_eq!((named.integrator.name(), named.reason), ("classic", IntegratorReason::Scene));
+    }
+}
+
+#[test]
+fn a_chosen_integrator_counts_as_one_that_is_named() {
+    for (material, name) in [(r#"{"phong": {}}"#, "classic"), (r#"{"diffuse": {}}"#, "path")] {
+        let open = scene(&sphere(material));
+        let named = scene(&format!(r#""render": {{"integrator": "{name}"}}, {}"#, sphere(material)));
+        assert_eq!(open.fingerprint(), named.fingerprint());
+        assert!(!open.to_json().contains("integrator") && open.compile().unwrap().integrator.integrator.name() == name);
+        assert!(open.has_world_of(&named));
+    }
+    let open = scene(r#""objects": [{"shape": "sphere"}]"#);
+    let path = scene(r#""render": {"integrator": "path"}, "objects": [{"shape": "sphere"}]"#);
+    assert!(!open.has_world_of(&path), "the default lights differ");
+    let lit = |more: &str| scene(&format!(r#"{more} "lights": [{{"point": {{}}}}], "objects": [{{"shape": "sphere"}}]"#));
+    assert!(lit("").has_world_of(&lit(r#""render": {"integrator": "path"},"#)));
+}
+
+#[test]
+fn unlit_scenes_get_light_that_their_integrator_finds() {
+    let key = |members: &str| {
+        let world = scene(members).compile().unwrap().world;
+        let lamp = world.lamps()[0].at(0.0).light.sample(Vec3::ZERO, juggler_math::Vec2::ZERO).unwrap();
+        assert_eq!(world.lamps().len(), 1);
+        (lamp.radiance.g, world.ambient().g)
+    };
+    let (classic, ambient) = key(r#""objects": [{"shape": "sphere"}]"#);
+    assert!((classic - 0.6).abs() < 0.01 && ambient == 0.15, "{classic} {ambient}");
+    // A white diffuse surface reflects L / π of a light without a surface, a white classic one L.
+    let (path, ambient) = key(&sphere(r#"{"diffuse": {}}"#));
+    assert!((path / std::f32::consts::PI - classic).abs() < 0.01 && ambient == 0.0, "{path} {ambient}");
+    let (phong, ambient) = key(r#""render": {"integrator": "path"}, "objects": [{"shape": "sphere"}]"#);
+    assert_eq!((phong, ambient), (classic, 0.0));
+    let both = r#""objects": [{"shape": "sphere"}, {"shape": "cuboid", "material": {"diffuse": {}}}]"#;
+    assert!(key(both).0 > phong && key(both).0 < path);
+}
+
+#[test]
+fn lights_that_light_nothing_are_warned_of() {
+    let lights = r#""lights": [{"ambient": {}}, {"point": {"extent": {"sphere": {"radius": 1}}, "samples": 4}}]"#;
+    let path = scene(&format!(r#""render": {{"integrator": "path"}}, {lights}, "objects": []"#));
+    assert_eq!(
+        warnings(&path),
+        [
+            ("lights[0]".to_owned(), "an `ambient` light lights nothing under `path`".to_owned()),
+            ("lights[1].point.samples".into(), "`samples` of a light has no effect under `path`".into()),
+        ]
+    );
+    assert_eq!(warnings(&scene(&format!(r#"{lights}, "objects": []"#))), []);
+    let classic = |more: &str| scene(&format!(r#""render": {{"integrator": "classic"}}, {more}"#));
+    let lamp = sphere(r#"{"emissive": {}}"#);
+    let said = |message: &str, path: &str| vec![(path.to_owned(), message.to_owned())];
+    let emits = said("`emissive` lights nothing under `classic`", "objects[0].material");
+    assert_eq!(warnings(&classic(&lamp)), emits);
+    assert_eq!(warnings(&scene(&lamp)), []);
+    let sky = r#""background": {"sky": {}}, "objects": []"#;
+    assert_eq!(warnings(&classic(sky)), said("`sky` lights nothing under `classic`", "background"));
+    assert_eq!(warnings(&classic(&format!(r#"{sky}, "lights": [{{"point": {{}}}}]"#))), []);
+}
+
+const AREA: &str = r#"{"area": {"shape": {"disk": {"radius": 0.5}}, "position": [0, 3, 0], "power": 50, "light_group": "top"}}"#;
+
+#[test]
+fn an_area_light_is_a_shape_behind_all_objects() {
+    let scene = scene(&format!(r#""lights": [{{"point": {{}}}}, {AREA}], "objects": [{{"shape": "sphere"}}]"#));
+    let compiled = scene.compile().unwrap();
+    let (world, names) = (&compiled.world, &compiled.names);
+    assert_eq!((world.geometry().shapes, world.entry_of(1)), (2, 1));
+    assert_eq!((names.entries, names.object(0), names.object(1)), (2, "objects[0]".into(), "lights[1]".into()));
+    assert_eq!(names.light_groups[usize::from(world.shape_group(1).0)], "top");
+    assert_eq!(names.light_groups[usize::from(world.shape_group(0).0)], "rest");
+    assert_eq!(Part::of(&scene.description, 1).unwrap().path, "lights[1]");
+    assert!(world.shape_bounds(1).center().abs_diff_eq(Vec3::new(0.0, 3.0, 0.0), 1e-5));
+    // The default camera sees the objects, and stays when the world is used again.
+    let again = scene.compile_with(&compiled).unwrap();
+    assert!(compiled.bounds.max.y <= 1.0 && again.cameras == compiled.cameras);
+    assert_eq!(scene.needs().objects, 2);
+}
+
+#[test]
+fn an_area_light_moves_while_the_shutter_is_open() {
+    let light = r#"{"area": {"position": ["=frame", 3, 0]}}"#;
+    let scene = scene(&format!(
+        r#""render": {{"shutter": [0, 1]}}, "animation": {{"frames": 5}}, "lights": [{light}], "objects": [{{"shape": "sphere"}}]"#
+    ));
+    let world = scene.compile().unwrap().world;
+    let bounds = world.shape_bounds(1);
+    assert!(world.moves() && (bounds.min.x + 0.5).abs() < 1e-3 && (bounds.max.x - 1.5).abs() < 1e-3, "{bounds:?}");
+}
+
+/// A room of a floor and a ceiling at height 3, and in it this light.
+fn room(object: &str, lights: &str) -> Scene {
+    let camera = r#"{"perspective": {"eye": [0, 1.5, 6], "look_at": [0, 1.5, 0]}}"#;
+    let ceiling = r#"{"shape": {"rectangle": {"size": [8, 8]}}, "transform": [{"translate": [0, 3, 0]}]}"#;
+    scene(&format!(
+        r#""camera": {camera}, "lights": [{lights}],
+            "objects": [{{"shape": {{"rectangle": {{"size": [8, 8]}}}}}}, {ceiling} {object}]"#
+    ))
+}
+
+fn lamp(height: f32, turn: &str, sides: &str) -> String {
+    format!(
+        r#", {{"shape": "rectangle", "material": {{"emissive": {{"sides": "{sides}"}}}},
+            "transform": [{turn} {{"translate": [0, {height}, 0]}}]}}"#
+    )
+}
+
+const TURN: &str = r#"{"rotate": {"axis": [1, 0, 0], "degrees": 180}},"#;
+
+#[test]
+fn emitters_whose_light_goes_nowhere_are_warned_of() {
+    let touching = "the front of this rectangle, which emits light along [0, 1, 0], lies on `objects[1]`";
+    // The first ceiling light: it shines up, into the ceiling or beyond it.
+    for height in [3.0, 2.995] {
+        assert_eq!(warnings(&room(&lamp(height, "", "front"), "")), [("objects[2]".into(), touching.to_owned())]);
+    }
+    let away = "this rectangle emits light along [0, 1, 0], away from everything in the scene";
+    assert_eq!(warnings(&room(&lamp(3.5, "", "front"), "")), [("objects[2]".into(), away.to_owned())]);
+    let area = |more: &str| room("", &format!(r#"{{"area": {{"position": [0, 3.5, 0], {more}}}}}"#));
+    let up = area(r#""direction": [0, 2, 0]"#);
+    assert_eq!(warnings(&up), [("lights[0]".into(), away.to_owned())]);
+    assert!(up.check().to_string().contains("turn it with `direction` or `look_at`"));
+    // Turned, two-sided, at a distance: nothing is wrong.
+    for (height, turn, sides) in [(2.99, TURN, "front"), (2.0, "", "front"), (3.5, "", "both"), (3.5, TURN, "front")] {
+        assert_eq!(warnings(&room(&lamp(height, turn, sides), "")), [], "{height} {turn} {sides}");
+    }
+    assert_eq!(warnings(&area(r#""radiance": 1"#)), []);
+    // A screen that only the camera sees.
+    let screen = r#", {"shape": "rectangle", "material": {"emissive": {}},
+        "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [0, 1, 4.5]}]}"#;
+    assert_eq!(warnings(&room(screen, "")), []);
+}
