@@ -75,7 +75,7 @@ pub struct ViewArgs {
 /// Flags of `juggler render`.
 #[derive(Clone, Debug, Default, Arguments)]
 pub struct RenderArgs {
-    /// A scene file, the name of a built-in scene (see `juggler scenes`), or `-` for standard input
+    /// A scene file, a mesh (PLY, OBJ, STL), the name of a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
     /// Where the picture goes, or the film (.mp4, .webp, .apng, .gif); the ending says the format, `-` is standard output [default: the scene's name.png]

@@ -5,6 +5,7 @@ use crate::build::{Build, MOST_PIXELS, Task, text_of};
 use crate::{Edit, Setting, Status, pose};
 use juggler::math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use juggler::scene::description::Animation;
+use juggler::scene::import::Content;
 use juggler::scene::kind::name_of;
 use juggler::scene::{Scene, camera_json, with_camera};
 use juggler::tracer::camera::AnyCamera;
@@ -153,9 +154,13 @@ impl Subject {
         self.kept.push((name.to_owned(), self.picture.view().camera));
     }
 
-    /// The text of the scene's file with the camera kept in it, when there is a file.
+    /// The text of the scene's file with the camera kept in it, when there is a file that holds a scene.
     pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
-        let text = std::fs::read_to_string(Path::new(&self.name)).ok()?;
+        let path = Path::new(&self.name);
+        if Content::of_file(path).is_mesh() {
+            return None;
+        }
+        let text = std::fs::read_to_string(path).ok()?;
         let kept = with_camera(&text, name, &self.picture.view().camera);
         Some(kept.map_err(|error| format!("error: the camera cannot be kept in `{}`: {error}", self.name)))
     }
