@@ -88,7 +88,7 @@ pub struct ViewArgs {
 /// Flags of `juggler render`.
 #[derive(Clone, Debug, Default, Arguments)]
 pub struct RenderArgs {
-    /// A scene file, a built-in scene (see `juggler scenes`), or `-` for standard input
+    /// A scene file, a mesh (PLY, OBJ, STL), a built-in scene (see `juggler scenes`), or `-` for standard input
     pub scene: String,
 
     /// Where the picture or movie goes; the ending says the format

@@ -98,7 +98,10 @@ impl From<SceneError> for Failure {
             SceneError::Problems(problems) => Self::Scene(Box::new(problems)),
             SceneError::Read { .. } => Self::System(error.to_string()),
             SceneError::Unknown(unknown) => unknown.into(),
-            SceneError::NotText { .. } | SceneError::UnknownBuiltIn { .. } => Self::Wrong(error.to_string()),
+            SceneError::NotText { .. }
+            | SceneError::Foreign { .. }
+            | SceneError::Mesh(_)
+            | SceneError::UnknownBuiltIn { .. } => Self::Wrong(error.to_string()),
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::scene::document::{bytes_to_read, read_text};
+use juggler::scene::import::{Content, estimate};
 use juggler::scene::{Scene, named};
 use std::io::Read;
 use std::path::Path;
@@ -14,8 +15,8 @@ const STANDARD_INPUT_NAME: &str = "standard input";
 /// Most bytes that are taken from there.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// Reads a scene file; what is no file may be the name of a built-in scene. A text that needs more than `most` bytes of
-/// memory is refused.
+/// Reads a scene file, or a mesh file, which gets a scene around it; what is no file may be the name
+/// of a built-in scene. A file that needs more than `most` bytes of memory is refused.
 pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
     if name == STANDARD_INPUT {
         let text = standard_input()?;
@@ -23,7 +24,9 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
         return Ok(Scene::from_json(text, STANDARD_INPUT_NAME)?);
     }
     let path = Path::new(name);
-    if most.is_some() && path.is_file() {
+    if Content::of_file(path).is_mesh() {
+        check_memory(estimate(path).map_or(0, |mesh| mesh.peak), name, most)?;
+    } else if most.is_some() && path.is_file() {
         check_memory(std::fs::metadata(path).map_or(0, |file| file.len()), name, most)?;
         check_memory(read_text(path).map_or(0, |text| bytes_to_read(text.as_bytes())), name, most)?;
     }
@@ -34,7 +37,8 @@ pub fn load(name: &str, most: Option<u64>) -> Result<Scene, Failure> {
 #[cfg(feature = "view")]
 pub fn find(name: &str) -> Result<(), Failure> {
     let path = Path::new(name);
-    if path.exists() && !path.is_dir() {
+    let is_foreign = matches!(Content::of_file(path), Content::Foreign(_));
+    if path.exists() && !path.is_dir() && !is_foreign {
         return Ok(());
     }
     Scene::named(name).map(drop).map_err(Failure::from)

@@ -147,12 +147,17 @@ pub fn srgb_decode_f64(encoded: f64) -> f64 {
 }
 
 impl Rgb {
-    /// From `#rrggbb` in sRGB; `None` for any other text.
+    /// From `#rrggbb`, or `#rgb` where the digits of each channel are the same, in sRGB; `None` for any other text.
     pub fn from_hex(text: &str) -> Option<Self> {
-        let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()))?;
+        let digits = text.strip_prefix('#').filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;
         let value = u32::from_str_radix(digits, 16).ok()?;
-        let channel = |shift: u32| srgb_decode((value >> shift & 0xff) as f32 / 255.0);
-        Some(Self::new(channel(16), channel(8), channel(0)))
+        let levels = match digits.len() {
+            6 => [value >> 16, value >> 8 & 0xff, value & 0xff],
+            // A digit d stands for dd.
+            3 => [value >> 8, value >> 4 & 0xf, value & 0xf].map(|digit| 0x11 * digit),
+            _ => return None,
+        };
+        Some(levels.map(|level| srgb_decode(level as f32 / 255.0)).into())
     }
 }
 
@@ -201,7 +206,12 @@ mod tests {
     fn hexadecimal_colours() {
         assert_eq!(Rgb::from_hex("#ff0000"), Some(Rgb::new(1.0, 0.0, 0.0)));
         assert_eq!(Rgb::from_hex("#00800A").map(|c| c.g), Some(srgb_decode(128.0 / 255.0)));
-        for wrong in ["", "#", "ff0000", "#ff000", "#ff00000", "#gg0000", "#+f0000", "#ffé00", "#ff 000"] {
+        assert_eq!(Rgb::from_hex("#f0A"), Rgb::from_hex("#ff00aa"));
+        assert_eq!(Rgb::from_hex("#fff"), Some(Rgb::WHITE));
+        for wrong in [
+            "", "#", "ff0000", "f00", "#ff", "#ff00", "#ff000", "#ff00000", "#+f0", "#gg0000", "#+f0000", "#ffé00",
+            "#ff 000",
+        ] {
             assert_eq!(Rgb::from_hex(wrong), None, "{wrong}");
         }
     }

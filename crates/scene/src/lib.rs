@@ -9,6 +9,7 @@
 //! Whatever is wrong becomes a [`report`] with file, line, column, path and what was probably meant.
 
 pub mod animate;
+mod around;
 mod bookmark;
 mod building;
 pub mod compile;
@@ -23,6 +24,7 @@ mod moments;
 pub mod named;
 pub mod path;
 mod presets;
+mod relocate;
 pub mod report;
 mod scene;
 pub mod schema;
@@ -40,3 +42,4 @@ pub use report::{Problem, Problems, Severity};
 pub use scene::{Scene, SceneError};
 pub use schema::{reference, schema_json};
 pub use store::{Bundle, Store};
+pub use validate::names_page;

@@ -4,14 +4,16 @@ use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Need
 use crate::description::{Animation, Description};
 use crate::document::{Document, Node, Sources, Unreadable, put};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
+use crate::import::{Content, Foreign};
 use crate::integrator::IntegratorChoice;
 use crate::moments::Moments;
 use crate::named::Unknown;
 use crate::path::Path as ScenePath;
+use crate::relocate::relocate;
 use crate::report::{Finding, Problems, plain_io};
 use crate::store::{Bundle, Store};
 use crate::validate::validate;
-use crate::{animate, schema};
+use crate::{animate, around, schema};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
@@ -38,6 +40,17 @@ pub enum SceneError {
         /// Why not.
         message: String,
     },
+    /// The file is of a format that is known, but not read yet.
+    #[error("`{}`: {format}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: Foreign,
+    },
+    /// The file is a mesh, but no scene can be made around it.
+    #[error("{0}")]
+    Mesh(String),
     /// No built-in scene has this name.
     #[error("no built-in scene is called `{name}`{}", help.as_ref().map(|h| format!("; {h}")).unwrap_or_default())]
     UnknownBuiltIn {
@@ -82,6 +95,8 @@ struct Origin {
     frame: f64,
     resolved: Node,
     moments: Moments,
+    /// What is allowed and probably not meant.
+    warnings: Vec<Finding>,
 }
 
 impl Scene {
@@ -90,7 +105,8 @@ impl Scene {
         Self::default()
     }
 
-    /// Reads a scene file and what it includes, at frame 0.
+    /// Reads a scene file and what it includes, at frame 0. A mesh file gets a scene around it: floor,
+    /// light and a camera that holds all of it.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         Self::read(path.as_ref(), Library::default())
     }
@@ -101,6 +117,15 @@ impl Scene {
     }
 
     fn read(path: &Path, library: Library) -> Result<Self, SceneError> {
+        match library.store().content(path) {
+            Content::Scene => {}
+            Content::Mesh { z_up } => {
+                let bounds = library.bounds(path).map_err(SceneError::Mesh)?;
+                let description = around::describe(&path.to_string_lossy(), &bounds, z_up);
+                return Ok(Self { description, origin: None, library });
+            }
+            Content::Foreign(format) => return Err(SceneError::Foreign { path: path.into(), format }),
+        }
         let text = library.store().text(path).map_err(|unreadable| match unreadable {
             Unreadable::Io(source) => SceneError::Read { path: path.into(), source },
             Unreadable::NotText(message) => SceneError::NotText { path: path.into(), message },
@@ -166,8 +191,9 @@ impl Scene {
         let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, frame);
         findings.extend(wrong);
         let description = described(&resolved, &mut findings);
-        let origin = Arc::new(Origin { document, frame, resolved, moments: Moments::default() });
-        let whole = description.is_some() && findings.is_empty();
+        let whole = description.is_some() && !findings.iter().any(Finding::is_error);
+        let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
+        let origin = Arc::new(Origin { document, frame, resolved, moments: Moments::default(), warnings });
         let scene = Self { description: description.unwrap_or_default(), origin: Some(origin), library };
         if whole {
             return Ok(scene);
@@ -287,6 +313,13 @@ impl Scene {
         serde_json::to_string_pretty(&self.to_value()).unwrap_or_default()
     }
 
+    /// The same for a file in `folder`, from where the files that the scene names have other names.
+    pub fn to_json_in(&self, folder: &Path) -> String {
+        let mut json = self.to_value();
+        relocate(&mut json, &self.files(), folder);
+        serde_json::to_string_pretty(&json).unwrap_or_default()
+    }
+
     /// The same as a tree.
     pub fn to_value(&self) -> Value {
         let still = Description { animation: Animation::default(), ..self.description.clone() };
@@ -296,11 +329,12 @@ impl Scene {
         json
     }
 
-    /// What does not fit the schema. A scene from a file has been checked when it was read.
+    /// What does not fit the schema. A scene from a file has been checked when it was read; warnings
+    /// are left of that.
     fn own_findings(&self) -> Vec<Finding> {
         match &self.origin {
-            Some(_) => Vec::new(),
-            None => validate(&serde_json::to_value(&self.description).unwrap_or_default().into()).findings,
+            Some(origin) => origin.warnings.clone(),
+            None => validate(&serde_json::to_value(&self.description).unwrap_or_default().into()).all(),
         }
     }
 
@@ -320,7 +354,7 @@ impl Scene {
 /// Findings of an early step with those of a later one. What the early step found wrong, the later one need not
 /// find wrong again.
 fn joined(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
-    let fresh = |finding: &Finding| !early.iter().any(|known| known.covers(finding));
+    let fresh = |finding: &Finding| !early.iter().any(|known| known.is_error() && known.covers(finding));
     let mut later: Vec<Finding> = later.into_iter().filter(fresh).collect();
     early.append(&mut later);
     early
@@ -330,8 +364,9 @@ fn joined(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
 /// what is wrong with the rest.
 pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Description> {
     let mut validated = validate(tree);
-    findings.append(&mut validated.findings);
-    let json = validated.json?;
+    let json = validated.json.take();
+    findings.append(&mut validated.all());
+    let json = json?;
     match Description::deserialize(&json) {
         Ok(description) => Some(description),
         // The schema allows what the types refuse: only a slip of ours can bring us here.

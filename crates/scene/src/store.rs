@@ -1,7 +1,7 @@
 //! Where the files of a scene come from: the disk, or memory where there is none.
 
 use crate::document::{self, Unreadable, text_of};
-use crate::import::{self, ImportError, Limits};
+use crate::import::{self, Content, ImportError, Limits};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -45,6 +45,16 @@ impl Store {
             Self::Memory(bundle) => {
                 let (_, bytes) = bundle.find(path).ok_or_else(|| Unreadable::Io(ErrorKind::NotFound.into()))?;
                 text_of(bytes.clone()).map_err(Unreadable::NotText)
+            }
+        }
+    }
+
+    /// What a file holds that is given as a scene.
+    pub(crate) fn content(&self, path: &Path) -> Content {
+        match self {
+            Self::Disk => Content::of_file(path),
+            Self::Memory(bundle) => {
+                bundle.find(path).map_or(Content::Scene, |(_, bytes)| Content::of(path, bytes, bytes.len() as u64))
             }
         }
     }

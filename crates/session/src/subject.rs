@@ -7,6 +7,7 @@ use juggler::denoise::Denoiser;
 use juggler::math::{Rgb, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
+use juggler::scene::import::Content;
 use juggler::scene::kind::name_of;
 use juggler::scene::{Scene, camera_json, with_camera};
 use juggler::tracer::camera::AnyCamera;
@@ -155,9 +156,13 @@ impl Subject {
         self.kept.push((name.to_owned(), self.picture.view().camera));
     }
 
-    /// The text of the scene's file with the camera kept in it, when there is a file.
+    /// The text of the scene's file with the camera kept in it, when there is a file that holds a scene.
     pub fn with_bookmark(&self, name: &str) -> Option<Result<String, String>> {
-        let text = read_text(Path::new(&self.name)).ok()?;
+        let path = Path::new(&self.name);
+        if Content::of_file(path).is_mesh() {
+            return None;
+        }
+        let text = read_text(path).ok()?;
         let kept = with_camera(&text, name, &self.picture.view().camera);
         Some(kept.map_err(|error| format!("error: the camera cannot be kept in `{}`: {error}", self.name)))
     }

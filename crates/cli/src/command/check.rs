@@ -9,7 +9,7 @@ use juggler::scene::{Illuminance, Problems};
 /// Flags of `juggler check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A scene file, the name of a built-in scene, or `-` for standard input
+    /// A scene file, a mesh (PLY, OBJ, STL), the name of a built-in scene, or `-` for standard input
     scene: String,
 }
 

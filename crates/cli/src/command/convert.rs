@@ -1,14 +1,15 @@
-//! `juggler convert`: any readable scene as scene JSON, expressions resolved.
+//! `juggler convert`: any readable scene as scene JSON, expressions resolved; a mesh as a scene around it.
 
 use crate::failure::Failure;
 use crate::output;
 use crate::source;
 use clap::Args;
+use std::path::Path;
 
 /// Flags of `juggler convert`.
 #[derive(Debug, Args)]
 pub struct Convert {
-    /// A scene file, the name of a built-in scene, or `-` for standard input
+    /// A scene file, a mesh (PLY, OBJ, STL), the name of a built-in scene, or `-` for standard input
     scene: String,
     /// The file to write, `-` for standard output
     output: String,
@@ -21,6 +22,7 @@ impl Convert {
     /// Writes the scene.
     pub fn run(self) -> Result<(), Failure> {
         let scene = source::load(&self.scene, None)?.at_frame(f64::from(self.frame))?;
-        output::write_text(&self.output, &scene.to_json())
+        let folder = Path::new(&self.output).parent().filter(|_| self.output != output::STANDARD_OUTPUT);
+        output::write_text(&self.output, &folder.map_or_else(|| scene.to_json(), |folder| scene.to_json_in(folder)))
     }
 }

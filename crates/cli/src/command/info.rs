@@ -35,7 +35,7 @@ impl Info {
     /// Prints what a picture says, or builds the world or mesh and prints what is in it.
     pub fn run(self) -> Result<(), Failure> {
         let path = Path::new(&self.scene);
-        if import::is_mesh_name(path) && (path.exists() || path.is_symlink()) {
+        if import::Content::of_file(path).is_mesh() {
             return console::print(&mesh::Report::of(&self.scene)?.text(self.json));
         }
         let start = regular::first_bytes(path, 12).unwrap_or_default();

@@ -16,7 +16,7 @@ const FIRST_SCENE: &str = "juggler";
 /// Flags of `juggler serve`.
 #[derive(Debug, Args)]
 pub struct Serve {
-    /// A scene file, which is watched, or the name of a built-in scene [default: juggler]
+    /// A scene file or a mesh (PLY, OBJ, STL), which is watched, or the name of a built-in scene [default: juggler]
     scene: Option<String>,
 
     /// Where to listen; port 0 takes a free one

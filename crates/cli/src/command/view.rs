@@ -12,7 +12,7 @@ const FIRST: &str = "juggler";
 /// Flags of `juggler view`.
 #[derive(Debug, Args)]
 pub struct View {
-    /// A scene file, which is watched, or the name of a built-in scene [default: the juggler, and a choice of others]
+    /// A scene file or a mesh (PLY, OBJ, STL), which is watched, or the name of a built-in scene [default: the juggler, and a choice of others]
     scene: Option<String>,
     /// Width and height of the picture in pixels [default: those of the scene]
     #[arg(long, value_name = "WxH", value_parser = value::size)]

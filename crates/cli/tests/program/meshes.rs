@@ -77,3 +77,37 @@ fn objects_share_a_mesh_and_its_hierarchy() {
         assert!(one > 25_000 && many < one + 4000, "{one} {many}");
     }
 }
+
+/// A mesh is rendered as it is, checked, and converted to a scene with the same picture.
+#[test]
+fn a_mesh_in_place_of_a_scene() {
+    let folder = Folder::new();
+    fs::write(folder.path("tri.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    folder.good("render tri.obj --size 24x18 --samples 2 --quiet");
+    assert_eq!(folder.files(), ["tri.obj", "tri.png"]);
+    assert_eq!(folder.good("check tri.obj").stdout, "tri.obj: no mistakes\n");
+    assert!(folder.good("info tri.obj").stdout.contains("triangles    1\n"));
+    fs::create_dir(folder.path("scenes")).unwrap();
+    folder.good("convert tri.obj scenes/tri.json");
+    let text = fs::read_to_string(folder.path("scenes/tri.json")).unwrap();
+    assert!(text.contains("\"file\": \"../tri.obj\""), "{text}");
+    let hash = |scene: &str| folder.hash(&format!("{scene} --size 24x18 --samples 2 -o a.png"));
+    assert_eq!(hash("scenes/tri.json"), hash("tri.obj"));
+    let message = folder.bad("render tri.obj --max-memory 1K -o b.png", 2);
+    assert!(message.contains("memory"), "{message}");
+}
+
+#[test]
+fn files_of_other_programs_are_named() {
+    let folder = Folder::new();
+    fs::write(folder.path("car.glb"), b"glTF\x02\0\0\0").unwrap();
+    fs::write(folder.path("room.pov"), "sphere { 0, 1 }").unwrap();
+    for command in ["render", "check", "info", "convert"] {
+        let output = if command == "convert" { " a.json" } else { "" };
+        let message = folder.bad(&format!("{command} car.glb{output}"), 2);
+        assert_eq!(message, "error: `car.glb`: glTF is not read yet; meshes in OBJ, PLY and STL are\n");
+        assert!(
+            folder.bad(&format!("{command} room.pov{output}"), 2).contains("POV-Ray's scene language is not read yet")
+        );
+    }
+}

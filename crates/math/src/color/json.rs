@@ -17,8 +17,8 @@ enum Written {
     Channels([f32; 3]),
     /// The same value in all three channels.
     Grey(f32),
-    /// sRGB as `#rrggbb`.
-    Hex(#[schemars(regex(pattern = r"^#[0-9a-fA-F]{6}$"))] String),
+    /// sRGB as `#rrggbb`, or as `#rgb` for short.
+    Hex(#[schemars(regex(pattern = r"^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"))] String),
 }
 
 impl Serialize for Rgb {
@@ -94,6 +94,7 @@ mod tests {
         assert_eq!(read("1"), Ok(Rgb::WHITE));
         assert_eq!(read("-1"), Ok(Rgb::splat(-1.0)));
         assert_eq!(read("\"#ff0000\""), Ok(Rgb::new(1.0, 0.0, 0.0)));
+        assert_eq!(read("\"#f00\""), Ok(Rgb::new(1.0, 0.0, 0.0)));
     }
 
     #[test]

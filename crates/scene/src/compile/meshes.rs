@@ -7,7 +7,7 @@ use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
-use juggler_math::Vec3;
+use juggler_math::{Aabb, Vec3};
 use juggler_tracer::shape::{InvalidShape, Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -72,6 +72,11 @@ impl Library {
     /// The hash of a file's content; zeros for a file that cannot be read, which compiling reports.
     pub fn digest(&self, path: &std::path::Path) -> [u8; 32] {
         self.get(path).digest
+    }
+
+    /// The box around the mesh of a file, or why there is none.
+    pub fn bounds(&self, path: &std::path::Path) -> Result<Aabb, String> {
+        self.get(path).mesh.as_ref().map(|(mesh, _)| mesh.bounds()).map_err(Clone::clone)
     }
 
     /// Files are loaded without the lock, which threads of one pool must not wait for in the midst of their work:

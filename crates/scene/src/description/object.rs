@@ -4,7 +4,7 @@
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
 //! ```
 
-use super::{Axes, Chain, Limb, Rotate, TransformStep};
+use super::{Axes, Chain, Limb, Rotate, TransformStep, transform};
 use juggler_math::Vec3;
 use juggler_tracer::material::{AnyMaterial, MaterialRef};
 use juggler_tracer::shape::AnyShape;
@@ -40,8 +40,9 @@ pub struct Object {
     /// Spheres along two bones that meet in a joint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limb: Option<Limb>,
-    /// How it is moved, turned and scaled into place: steps in order.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    /// How it is moved, turned and scaled into place: steps in order, or a single step.
+    #[serde(skip_serializing_if = "Vec::is_empty", deserialize_with = "transform::steps")]
+    #[schemars(with = "transform::Steps")]
     pub transform: Vec<TransformStep>,
     /// What it is made of: a material, or the name of one of the scene's. Without one it takes that of the group
     /// that holds it, or else a plain grey.

@@ -2,6 +2,7 @@
 //!
 //! ```json
 //! {"transform": [{"scale": 2}, {"rotate": {"axis": [0, 1, 0], "degrees": 30}}, {"translate": [0, 1, 0]}]}
+//! {"transform": {"translate": [0, 1, 0]}}
 //! ```
 
 use super::Misplaced;
@@ -9,7 +10,7 @@ use glam::{DMat3, Mat3};
 use juggler_math::quaternion;
 use juggler_math::{DVec3, Transform, Vec3};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// One step; the first of a list happens first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,6 +28,25 @@ pub enum TransformStep {
     LookAt(LookAt),
     /// Any affine map: 3 or 4 rows of 4 numbers, that multiply points written as columns; a fourth row is 0 0 0 1.
     Matrix(#[schemars(length(min = 12, max = 16))] Vec<f32>),
+}
+
+/// A transform as it may be written.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Transform")]
+pub enum Steps {
+    /// Steps in order; the first happens first.
+    Several(Vec<TransformStep>),
+    /// A single step.
+    One(TransformStep),
+}
+
+/// Steps from an array of them or from one.
+pub fn steps<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<TransformStep>, D::Error> {
+    Ok(match Steps::deserialize(deserializer)? {
+        Steps::Several(steps) => steps,
+        Steps::One(step) => vec![step],
+    })
 }
 
 /// A turn about an axis through the origin, right-handed.

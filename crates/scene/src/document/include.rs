@@ -11,7 +11,7 @@ use super::{Unreadable, parse};
 use crate::report::{Finding, plain_io};
 use crate::schema::Schema;
 use crate::store::Store;
-use crate::suggest::meant_or_all;
+use crate::validate::meant_in_scene;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -160,7 +160,7 @@ impl<'s> Reader<'s> {
         let known: Vec<&str> = known.into_iter().flat_map(|known| known.keys()).map(String::as_str).collect();
         for (key, member) in tree.members().filter(|(key, _)| !known.contains(&key.as_str())) {
             let finding = Finding::error(format!("`{key}` is not known here")).on(member.key_place);
-            self.findings.push(finding.maybe_help(meant_or_all(key, known.iter().copied())));
+            self.findings.push(finding.maybe_help(meant_in_scene(key)));
         }
         if let Some(version) =
             tree.get("version").filter(|version| !matches!(&version.value, Value::Number(n) if n.as_f64() == Some(1.0)))

@@ -102,6 +102,8 @@ impl Node {
         for (depth, step) in path.steps().iter().enumerate() {
             let next = match step {
                 Step::Key(key) => node.get(key),
+                // What may be an array of one may be that one alone.
+                Step::Index(0) if matches!(node.value, Value::Object(_)) => Some(node),
                 Step::Index(index) => node.elements().get(*index),
             };
             let Some(next) = next else { return (place, depth) };

@@ -1,5 +1,6 @@
 //! Why a mesh file could not be loaded: which file, where in it, and what was expected there.
 
+use super::foreign::Foreign;
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
@@ -23,6 +24,9 @@ pub enum Fault {
     /// Neither the content nor the ending says what it is.
     #[error("not a known mesh format: expected a file named .obj, .ply or .stl")]
     UnknownFormat,
+    /// The file is of a format that is known, but not read yet.
+    #[error("{0}")]
+    Foreign(Foreign),
     /// The content breaks the rules of its format.
     #[error("{place}: {message}")]
     Malformed {

@@ -68,7 +68,7 @@ pub fn estimate(path: &Path) -> Result<Estimate, ImportError> {
         return Ok(Estimate::default());
     }
     let head = look(&mut file, 0, HEAD).map_err(failed)?;
-    let counts = match format(path, &head, size) {
+    let counts = match Format::of_head(&head, size).or_else(|| Format::of_name(path)) {
         Some(Format::Stl) if stl::announced(&head) == Some(size) => soup((size / stl::FACET).saturating_sub(1)),
         Some(Format::Stl) => soup(sample(&mut file, head, size).map_err(failed)?.facets),
         Some(Format::Obj) => sample(&mut file, head, size).map_err(failed)?.wavefront(),
@@ -76,11 +76,6 @@ pub fn estimate(path: &Path) -> Result<Estimate, ImportError> {
         None => return Ok(Estimate::default()),
     };
     Ok(counts.estimate(size))
-}
-
-fn format(path: &Path, head: &[u8], size: u64) -> Option<Format> {
-    if stl::announced(head) == Some(size) { Some(Format::Stl) } else { Format::of_content(head) }
-        .or_else(|| Format::of_name(path))
 }
 
 fn look(file: &mut File, at: u64, length: u64) -> io::Result<Vec<u8>> {

@@ -15,6 +15,7 @@ mod assemble;
 mod error;
 mod estimate;
 mod faces;
+mod foreign;
 mod obj;
 mod pieces;
 mod ply;
@@ -27,6 +28,8 @@ mod weld;
 
 pub use error::{Fault, ImportError, Place};
 pub use estimate::{Estimate, estimate};
+pub use foreign::Foreign;
+pub use sniff::Content;
 
 use juggler_imaging::regular;
 use juggler_tracer::shape::MeshData;
@@ -105,11 +108,6 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, ImportError> {
     read_file(path, limits).map_err(|fault| ImportError { path: path.to_owned(), fault })
 }
 
-/// Whether a file's name ends as that of a mesh does.
-pub fn is_mesh_name(path: &Path) -> bool {
-    Format::of_name(path).is_some()
-}
-
 /// As [`load`], from the bytes of a file; only the ending of `path` is looked at.
 pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, ImportError> {
     let in_file = |fault| ImportError { path: path.to_owned(), fault };
@@ -117,7 +115,11 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, Imp
     // Some editors put the mark of UTF-8 before a text.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let named = Format::of_name(path);
-    let format = Format::of_content(bytes).or(named).ok_or(Fault::UnknownFormat).map_err(in_file)?;
+    if let Some(foreign) = Foreign::of_content(bytes) {
+        return Err(in_file(Fault::Foreign(foreign)));
+    }
+    let unknown = || Foreign::of_name(path).map_or(Fault::UnknownFormat, Fault::Foreign);
+    let format = Format::of_content(bytes).or(named).ok_or_else(|| in_file(unknown()))?;
     let result = match format {
         Format::Obj => obj::read(bytes, limits, PIECE),
         Format::Ply => ply::read(bytes, limits, PIECE),

@@ -52,8 +52,10 @@ fn what_cannot_be_read_is_named() {
     let directory = folder.path().join("folder.ply");
     std::fs::create_dir(&directory).unwrap();
     assert!(matches!(load(&directory, &Limits::default()).unwrap_err().fault, Fault::Read(_)));
-    let unknown = parse(Path::new("cow.fbx"), b"Kaydara FBX", &Limits::default()).unwrap_err();
-    assert_eq!(unknown.to_string(), "cow.fbx: not a known mesh format: expected a file named .obj, .ply or .stl");
+    let unknown = parse(Path::new("cow.moo"), b"\0\x01cow", &Limits::default()).unwrap_err();
+    assert_eq!(unknown.to_string(), "cow.moo: not a known mesh format: expected a file named .obj, .ply or .stl");
+    let foreign = parse(Path::new("cow.fbx"), b"Kaydara FBX", &Limits::default()).unwrap_err();
+    assert_eq!(foreign.to_string(), "cow.fbx: FBX is not read yet; meshes in OBJ, PLY and STL are");
 }
 
 #[test]

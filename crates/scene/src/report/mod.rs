@@ -76,6 +76,12 @@ impl Finding {
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
+
+    /// Whether the message holds these words.
+    #[cfg(test)]
+    pub(crate) fn says(&self, words: &str) -> bool {
+        self.message.contains(words)
+    }
 }
 
 /// Something wrong with a scene.

@@ -2,7 +2,7 @@
 
 use super::names::Family;
 use super::rule::{Rule, Way};
-use super::{Walk, inline, words};
+use super::{MAX_WARNINGS, Walk, inline, words};
 use crate::document::{Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
@@ -23,6 +23,7 @@ impl Walk<'_> {
                 let message = format!("a colour is [red, green, blue], this array has {} elements", channels.len());
                 return self.report(node, at, Finding::error(message));
             }
+            Written::Array(channels) if way.owner == Some("Color") => self.check_range(node, at, channels),
             Written::String(text) if way.rule.types.string => match way.owner.map(words::family) {
                 Some("Input") => self.refer(Family::Texture, node, text, at),
                 Some("MaterialRef") => self.refer(Family::Material, node, text, at),
@@ -31,6 +32,44 @@ impl Walk<'_> {
             _ => {}
         }
         if inline::is_texture(way) { self.texture(node, at, way) } else { self.value(node, at, way.rule.get()) }
+    }
+}
+
+impl Walk<'_> {
+    /// Warns of a color that looks like the levels of a picture, 0 to 255.
+    fn check_range(&mut self, node: &Node, at: &Trail<'_>, channels: &[Node]) {
+        let key = at.last_key().unwrap_or_default();
+        let Some(levels) = levels(channels).filter(|levels| levels.iter().any(|level| *level >= least_level(key)))
+        else {
+            return;
+        };
+        if self.warnings.len() < MAX_WARNINGS {
+            let [r, g, b] = levels;
+            let message =
+                format!("[{r}, {g}, {b}] is very bright: colors are linear, from 0 to 1 for what surfaces reflect");
+            let help = format!("did you mean \"#{r:02x}{g:02x}{b:02x}\"?");
+            self.warnings.push(Finding::warning(message).help(help).at(at).on(node.place));
+        }
+    }
+}
+
+/// Three whole numbers from 0 to 255.
+fn levels(channels: &[Node]) -> Option<[u8; 3]> {
+    let level = |node: &Node| match &node.value {
+        Written::Number(number) => number.as_u64().and_then(|level| u8::try_from(level).ok()),
+        _ => None,
+    };
+    let [r, g, b] = channels else { return None };
+    Some([level(r)?, level(g)?, level(b)?])
+}
+
+/// The least level that a color of this key is warned of: light may be far brighter than what
+/// surfaces reflect.
+fn least_level(key: &str) -> u8 {
+    match key {
+        "radiance" | "emission" | "emissive" | "scattering" | "absorption" | "eta" | "k" => u8::MAX,
+        "color" | "background" | "horizon" | "zenith" | "nadir" | "top" | "bottom" => 100,
+        _ => 16,
     }
 }
 

@@ -1,12 +1,15 @@
 //! Families: `{"sphere": {...}}`, or `"sphere"` where all fields have defaults; and lists of fixed words.
 
 use super::rule::Rule;
-use super::{Walk, words};
+use super::{Walk, foreign, words};
 use crate::document::{Members, Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest::meant_or_all;
 use serde_json::Value;
+
+/// Most keys that the right form of an object repeats.
+const MAX_SHOWN: usize = 8;
 
 impl Walk<'_> {
     pub(super) fn family(&mut self, node: &Node, at: &Trail<'_>, family: &'static Rule) -> Option<Value> {
@@ -30,7 +33,8 @@ impl Walk<'_> {
         };
         let Some((_, content)) = family.kinds.iter().find(|(kind, _)| kind == key) else {
             let finding = Finding::error(format!("unknown kind of {} `{key}`", noun(family))).on(member.key_place);
-            self.findings.push(finding.maybe_help(meant_or_all(key, kinds(family))).at(&at.key(key)));
+            let help = foreign::kind(key, family).or_else(|| meant_or_all(key, kinds(family)));
+            self.findings.push(finding.maybe_help(help).at(&at.key(key)));
             return None;
         };
         let value = self.value(&member.node, &at.key(key), content.get())?;
@@ -51,11 +55,18 @@ impl Walk<'_> {
         let found =
             if members.is_empty() { "none".into() } else { words::list(members.keys().map(String::as_str), "and") };
         let message = format!("{a} {noun} is of exactly one kind, found {found}");
-        let tagged = members.get("type").and_then(|tag| tag.node.as_str()).filter(|tag| kinds.contains(tag));
-        let help = tagged.map(|kind| format!("write {{\"{kind}\": {{...}}}} instead of \"type\": \"{kind}\""));
         let several = members.len() > 1 && members.keys().all(|key| kinds.contains(&key.as_str()));
-        let other = || if several { "choose one".into() } else { format!("kinds: {}", words::list(kinds, "and")) };
-        let help = help.unwrap_or_else(other);
+        let is_step = family.name == Some("TransformStep");
+        let other = || {
+            if several && is_step {
+                "write an array of steps, [{...}, {...}]: the first happens first".into()
+            } else if several {
+                "choose one".into()
+            } else {
+                format!("kinds: {}", words::list(kinds, "and"))
+            }
+        };
+        let help = tagged(members, family).unwrap_or_else(other);
         self.report(node, at, Finding::error(message).help(help))
     }
 
@@ -78,10 +89,25 @@ impl Walk<'_> {
                 let known: Vec<&str> = kinds(family).chain(family.words.iter().copied()).collect();
                 let what = if family.words.is_empty() { "kind of " } else { "" };
                 let finding = Finding::error(format!("unknown {what}{} `{text}`", noun(family)));
-                self.report(node, at, finding.maybe_help(meant_or_all(text, known.iter().copied())))
+                let help = foreign::kind(text, family).or_else(|| meant_or_all(text, known.iter().copied()));
+                self.report(node, at, finding.maybe_help(help))
             }
         }
     }
+}
+
+/// The right form of `{"type": "diffuse", "reflectance": 0.5}`: the kind as a key, with the other
+/// keys inside.
+fn tagged(members: &Members, family: &Rule) -> Option<String> {
+    let tag = members.get("type")?.node.as_str()?;
+    let known = kinds(family).find(|kind| *kind == tag);
+    let Some(kind) = known.or_else(|| foreign::kind_name(tag, family)) else {
+        let all = || format!("kinds stand as keys, {{\"KIND\": {{...}}}}: {}", words::list(kinds(family), "and"));
+        return Some(foreign::kind(tag, family).unwrap_or_else(all));
+    };
+    let inside = members.keys().filter(|key| *key != "type").take(MAX_SHOWN).map(|key| format!("\"{key}\": ..."));
+    let inside = inside.collect::<Vec<_>>().join(", ");
+    Some(format!("write {{\"{kind}\": {{{inside}}}}} instead of \"type\": \"{tag}\""))
 }
 
 fn noun(family: &Rule) -> String {

@@ -13,6 +13,7 @@ use serde_json::Value;
 
 mod choice;
 mod family;
+mod foreign;
 mod inline;
 mod names;
 mod rule;
@@ -20,9 +21,12 @@ mod scalar;
 mod structure;
 mod words;
 
+pub use foreign::page as names_page;
 pub use names::Family;
 pub(crate) use words::{family as definition_family, list, noun as family_noun, plural};
 
+/// Most warnings that are collected.
+const MAX_WARNINGS: usize = 20;
 /// Most mistakes that are collected; a file of numbers where objects should be makes one for each.
 const MAX_FINDINGS: usize = 200;
 
@@ -33,23 +37,45 @@ pub struct Validated {
     pub json: Option<Value>,
     /// All that is wrong.
     pub findings: Vec<Finding>,
+    /// What is allowed and probably not meant.
+    pub warnings: Vec<Finding>,
+}
+
+impl Validated {
+    /// Mistakes, then warnings.
+    pub fn all(mut self) -> Vec<Finding> {
+        self.findings.append(&mut self.warnings);
+        self.findings
+    }
 }
 
 /// Checks a scene whose expressions are resolved.
 pub fn validate(tree: &Node) -> Validated {
-    let mut walk = Walk { schema: Schema::get(), tree, findings: Vec::new(), textures: Vec::new() };
+    let mut walk = Walk::new(tree);
     let mut json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
     if let Some(Value::Object(scene)) = &mut json {
         walk.add_textures(scene);
     }
-    Validated { json, findings: walk.findings }
+    Validated { json, findings: walk.findings, warnings: walk.warnings }
 }
 
 /// Checks a value that stands at `at` against the definition of this name.
 pub(crate) fn part(node: &Node, definition: &str, at: &Trail<'_>) -> Validated {
-    let mut walk = Walk { schema: Schema::get(), tree: node, findings: Vec::new(), textures: Vec::new() };
-    let json = Rule::named(definition).and_then(|rule| walk.value(node, at, rule));
-    Validated { json, findings: walk.findings }
+    match Rule::named(definition) {
+        Some(rule) => by_rule(node, rule, at),
+        None => Validated { json: None, findings: Vec::new(), warnings: Vec::new() },
+    }
+}
+
+fn by_rule(node: &Node, rule: &'static Rule, at: &Trail<'_>) -> Validated {
+    let mut walk = Walk::new(node);
+    let json = walk.value(node, at, rule);
+    Validated { json, findings: walk.findings, warnings: walk.warnings }
+}
+
+/// What an unknown key of a scene probably means.
+pub(crate) fn meant_in_scene(key: &str) -> Option<String> {
+    Rule::root().and_then(|scene| structure::meant(key, scene))
 }
 
 struct Walk<'t> {
@@ -59,6 +85,13 @@ struct Walk<'t> {
     findings: Vec<Finding>,
     /// Textures that are written in place, by the names that they get.
     textures: Vec<(String, Value)>,
+    warnings: Vec<Finding>,
+}
+
+impl<'t> Walk<'t> {
+    fn new(tree: &'t Node) -> Self {
+        Self { schema: Schema::get(), tree, findings: Vec::new(), textures: Vec::new(), warnings: Vec::new() }
+    }
 }
 
 impl Walk<'_> {

@@ -1,10 +1,11 @@
 //! Names: whatever is referred to must be there.
 
-use super::Walk;
+use super::rule::Rule;
+use super::{Walk, foreign};
 use crate::document::Node;
 use crate::path::Trail;
 use crate::report::Finding;
-use crate::suggest::meant_or_all;
+use crate::suggest::{closest, did_you_mean, meant_or_all};
 
 /// Things that a scene gives names to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,10 +41,21 @@ impl Walk<'_> {
             return;
         }
         let names: Vec<&str> = known.into_iter().flat_map(Node::members).map(|(name, _)| name.as_str()).collect();
-        let help = meant_or_all(name, names.iter().copied()).unwrap_or_else(|| match family {
+        let near = closest(name, names.iter().copied()).map(did_you_mean);
+        let kind = || kind_of_material(name).filter(|_| family == Family::Material);
+        let known = || meant_or_all(name, names.iter().copied());
+        let help = near.or_else(kind).or_else(known).unwrap_or_else(|| match family {
             Family::Texture => "the scene has no `textures`; a colour is written [r, g, b] or \"#rrggbb\"".into(),
             _ => format!("the scene has no `{part}`"),
         });
         self.report::<()>(node, at, Finding::error(format!("no {noun} is called `{name}`")).help(help));
     }
+}
+
+/// What to write where a material's kind stands for its name.
+fn kind_of_material(name: &str) -> Option<String> {
+    let family = Rule::named("AnyMaterial")?;
+    let own = family.kinds.iter().any(|(kind, _)| *kind == name);
+    let own = own.then(|| format!("`{name}` is a kind of material: write {{\"{name}\": {{...}}}}"));
+    own.or_else(|| foreign::kind(name, family))
 }

@@ -113,6 +113,11 @@ impl Rule {
         RULES.first()
     }
 
+    /// Every rule.
+    pub fn all() -> &'static [Self] {
+        &RULES
+    }
+
     /// What a definition says.
     pub fn named(name: &str) -> Option<&'static Self> {
         NAMED.get(name).copied()

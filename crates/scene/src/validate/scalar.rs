@@ -69,7 +69,7 @@ impl Walk<'_> {
             self.refer(family, node, text, at);
         }
         if rule.color && Rgb::from_hex(text).is_none() {
-            let help = "a colour is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f";
+            let help = "a colour is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\"";
             return self.report(node, at, Finding::error(format!("`{text}` is not a colour")).help(help));
         }
         Some(text.into())

@@ -1,8 +1,8 @@
 //! Arrays and objects.
 
 use super::rule::Rule;
-use super::{MAX_FINDINGS, Walk, words};
-use crate::document::{Members, Node};
+use super::{MAX_FINDINGS, Walk, foreign, words};
+use crate::document::{Member, Members, Node};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest::meant_or_all;
@@ -59,8 +59,7 @@ impl Walk<'_> {
                 return None;
             }
             let Some(field) = rule.field(key) else {
-                let known: Vec<&str> = rule.fields.iter().flatten().map(|(name, _)| *name).collect();
-                let finding = unknown_key(key, &known, at).on(member.key_place);
+                let finding = unknown_key(key, member, rule, at).on(member.key_place);
                 self.findings.push(finding.at(&at.key(key)));
                 sound = false;
                 continue;
@@ -115,11 +114,40 @@ impl Walk<'_> {
     }
 }
 
-fn unknown_key(key: &str, known: &[&str], at: &Trail<'_>) -> Finding {
-    if let ([], Some(owner)) = (known, at.last_key()) {
-        return Finding::error(format!("`{owner}` has no setting `{key}`, nor any other"))
-            .help(format!("write \"{owner}\": {{}}"));
+fn unknown_key(key: &str, member: &Member, rule: &'static Rule, at: &Trail<'_>) -> Finding {
+    let has_settings = rule.fields.iter().flatten().next().is_some();
+    if let (false, Some(owner)) = (has_settings, at.last_key()) {
+        let help = foreign::key(key, rule).unwrap_or_else(|| format!("write \"{owner}\": {{}}"));
+        return Finding::error(format!("`{owner}` has no setting `{key}`, nor any other")).help(help);
     }
-    let finding = Finding::error(format!("`{key}` is not known here"));
-    finding.maybe_help(meant_or_all(key, known.iter().copied()))
+    let tagged = member.node.as_str().filter(|_| key == "type").and_then(|kind| home_of(kind, rule));
+    Finding::error(format!("`{key}` is not known here")).maybe_help(tagged.or_else(|| meant(key, rule)))
+}
+
+/// What an unknown key of an object probably means: a kind of what stands in one of its keys, a word
+/// of another program, or a known key.
+pub(super) fn meant(key: &str, rule: &'static Rule) -> Option<String> {
+    let known: Vec<&str> = rule.fields.iter().flatten().map(|(name, _)| *name).collect();
+    let foreign = || foreign::key(key, rule);
+    home_of(key, rule).or_else(foreign).or_else(|| meant_or_all(key, known.iter().copied()))
+}
+
+/// Where a kind by this name belongs in an object: `sphere` is a kind of shape, which stands under
+/// `shape`.
+fn home_of(kind: &str, rule: &'static Rule) -> Option<String> {
+    rule.fields.iter().flatten().find_map(|(field, content)| {
+        let ways = content.ways.iter().map(|way| way.rule.get());
+        let families = std::iter::once(content.get()).chain(ways);
+        families.into_iter().find_map(|family| {
+            let own = family.kinds.iter().map(|(name, _)| *name).find(|name| *name == kind);
+            let name = own.or_else(|| foreign::kind_name(kind, family).filter(|_| *field == "shape"))?;
+            let noun = words::noun(family.name?);
+            let called = if name == kind {
+                format!("`{kind}` is a kind of {noun}")
+            } else {
+                format!("`{kind}` is a {noun} that is called `{name}` here")
+            };
+            Some(format!("{called}: write \"{field}\": {{\"{name}\": {{...}}}}"))
+        })
+    })
 }

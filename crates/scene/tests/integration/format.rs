@@ -1,7 +1,7 @@
 //! What the format promises, by example.
 
 use juggler_scene::schema::Schema;
-use juggler_scene::{Scene, SceneError, reference, schema_json};
+use juggler_scene::{Scene, SceneError, names_page, reference, schema_json};
 use std::fs;
 use std::path::Path;
 
@@ -46,7 +46,12 @@ fn scenes_name_metals() {
 /// The published files say what this program does.
 #[test]
 fn schema_and_reference_are_current() {
-    for (file, text) in [("schema/scene.schema.json", schema_json()), ("docs/scene-format.md", reference())] {
+    let files = [
+        ("schema/scene.schema.json", schema_json()),
+        ("docs/scene-format.md", reference()),
+        ("docs/names.md", names_page()),
+    ];
+    for (file, text) in files {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file);
         if std::env::var_os("JUGGLER_BLESS").is_some() {
             fs::write(&path, &text).unwrap();
@@ -84,6 +89,45 @@ fn the_reference_holds_true() {
         assert!(!text.contains(name.as_str()), "the reference speaks Rust: {name}");
     }
     assert!(!text.contains("any value") && !text.contains("[`crate"));
+}
+
+/// What may be written shorter is the same scene, and is written out in full.
+#[test]
+fn short_forms_mean_the_same() {
+    let sphere = |transform: &str, color: &str| {
+        let material = format!(r#"{{"phong": {{"diffuse": "{color}"}}}}"#);
+        let object = format!(r#"{{"shape": "sphere", "transform": {transform}, "material": {material}}}"#);
+        scene(&format!(r#"{{"version": 1, "objects": [{object}]}}"#))
+    };
+    let long = sphere(r#"[{"translate": [0, 1, 0]}]"#, "#ff0033");
+    let short = sphere(r#"{"translate": [0, 1, 0]}"#, "#f03");
+    assert_eq!(short.description, long.description);
+    assert_eq!(short.to_json(), long.to_json());
+    assert_eq!(scene(&short.to_json()).description, long.description);
+    assert!(short.check().list().is_empty(), "{}", short.check());
+    let moving = sphere(r#"{"translate": [0, "=frame", 0]}"#, "#f03");
+    assert_eq!(moving.at_frame(1.0).unwrap().description, long.description);
+}
+
+/// Colors that look like levels of a picture are allowed and warned of; bright light is not.
+#[test]
+fn levels_of_a_picture_are_warned_of() {
+    let warned = |text: &str| {
+        let scene = scene(&format!(r#"{{"version": 1, "objects": [{{"shape": "sphere"}}], {text}}}"#));
+        assert!(scene.compile().is_ok());
+        scene.check().warnings()
+    };
+    for (text, warnings) in [
+        (r#""materials": {"a": {"phong": {"diffuse": [255, 0, 0]}}}"#, 1),
+        (r#""background": [135, 206, 235]"#, 1),
+        (r#""lights": [{"point": {"color": [255, 255, 255]}}]"#, 1),
+        (r#""lights": [{"point": {"color": [20, 15, 10]}}]"#, 0),
+        (r#""materials": {"a": {"emissive": {"radiance": [60, 50, 40]}}}"#, 0),
+        (r#""materials": {"a": {"phong": {"diffuse": [1, 0, 0]}}}"#, 0),
+        (r#""background": [2, 2, 2.5]"#, 0),
+    ] {
+        assert_eq!(warned(text), warnings, "{text}");
+    }
 }
 
 /// Numeric limits of single-precision and of 64-bit numbers are allowed themselves.

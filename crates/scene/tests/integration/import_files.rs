@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The file of this name among the assets, if they are there.
-fn asset(name: &str) -> Option<PathBuf> {
+pub fn asset(name: &str) -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
     let folder = std::env::var_os("JUGGLER_ASSETS").map_or_else(beside, PathBuf::from);
     if !folder.is_dir() {

@@ -10,6 +10,7 @@
 )]
 
 mod animation;
+mod around;
 mod built_in;
 mod defaults;
 mod format;

@@ -28,9 +28,9 @@ pub fn unblendable(node: &Node) -> Option<String> {
     match &node.value {
         Value::Number(_) => None,
         Value::String(text) if channels(text).is_some() => None,
-        Value::String(text) if text.starts_with('#') => {
-            Some(format!("`{text}` is not a colour: one is written \"#rrggbb\" with six digits 0-9 or a-f"))
-        }
+        Value::String(text) if text.starts_with('#') => Some(format!(
+            "`{text}` is not a colour: one is written \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\""
+        )),
         Value::Array(elements) if elements.is_empty() => Some("an array without numbers cannot be interpolated".into()),
         Value::Array(elements) => elements.iter().find_map(unblendable),
         _ => Some(format!(

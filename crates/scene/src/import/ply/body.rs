@@ -64,7 +64,8 @@ impl<'h> Body<'h> {
     /// Reads it.
     pub fn read(&self, mut values: impl Values) -> Result<Imported, Fault> {
         check_counts(self.header, &values)?;
-        let mut parts = Parts::default();
+        let warnings = self.header.warning.iter().cloned().collect();
+        let mut parts = Parts { warnings, ..Parts::default() };
         for element in &self.header.elements {
             match element.name.as_str() {
                 "vertex" => read_vertices(self, element, &mut values, &mut parts)?,

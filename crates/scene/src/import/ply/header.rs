@@ -2,6 +2,7 @@
 
 use super::super::error::{Fault, Place, quote};
 use super::super::text::{Scanner, integer};
+use crate::suggest::closest;
 
 /// The most elements of a file and properties of an element; real files have a handful, point clouds of
 /// Gaussians some sixty properties.
@@ -14,6 +15,8 @@ pub(super) struct Header {
     pub encoding: Encoding,
     /// What follows, in order.
     pub elements: Vec<Element>,
+    /// Lines that are passed over although they are no comments, in words.
+    pub warning: Option<String>,
 }
 
 /// How numbers are written.
@@ -121,6 +124,7 @@ impl Header {
         }
         let mut encoding = None;
         let mut elements = Vec::new();
+        let mut strays = Strays::default();
         while scanner.next_line() {
             match scanner.word() {
                 None | Some(b"comment" | b"obj_info") => {}
@@ -131,12 +135,49 @@ impl Header {
                     let place = scanner.place();
                     scanner.next_line();
                     let missing = || place.fault("expected a line 'format ...' before 'end_header'");
-                    return encoding.map(|encoding| Self { encoding, elements }).ok_or_else(missing);
+                    let encoding = encoding.ok_or_else(missing)?;
+                    return Ok(Self { encoding, elements, warning: strays.warning() });
                 }
-                word => return Err(scanner.expected("'element', 'property', 'comment' or 'end_header'", word)),
+                Some(word) => strays.pass(word, scanner)?,
             }
         }
-        Err(scanner.expected("'end_header'", None))
+        Err(strays.fault.unwrap_or_else(|| scanner.expected("'end_header'", None)))
+    }
+}
+
+/// Lines of a header that are neither declarations nor comments, as some exporters write them.
+#[derive(Default)]
+struct Strays {
+    count: u64,
+    /// The first such line as it may be shown.
+    first: String,
+    /// What is wrong with the first such line if the header has no end.
+    fault: Option<Fault>,
+}
+
+impl Strays {
+    /// Passes over a line that begins with `word`, unless `word` looks like a misspelt keyword.
+    fn pass(&mut self, word: &[u8], scanner: &mut Scanner<'_>) -> Result<(), Fault> {
+        const KEYWORDS: [&str; 3] = ["format", "element", "property"];
+        let fault = scanner.expected("'element', 'property', 'comment' or 'end_header'", Some(word));
+        if str::from_utf8(word).is_ok_and(|word| closest(word, KEYWORDS).is_some()) {
+            return Err(fault);
+        }
+        self.count += 1;
+        if self.fault.is_none() {
+            let line = [word, scanner.rest_of_line()].concat();
+            self.first = format!("{}: {}", scanner.place(), quote(&line));
+            self.fault = Some(fault);
+        }
+        Ok(())
+    }
+
+    fn warning(&self) -> Option<String> {
+        match self.count {
+            0 => None,
+            1 => Some(format!("ignored a line of the header that is no comment: {}", self.first)),
+            more => Some(format!("ignored {more} lines of the header that are no comments, the first {}", self.first)),
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Read are the element `vertex` with `x y z`, `nx ny nz` and the first of `u v`, `s t` and
 //! `texture_u texture_v`, and the element `face` with its list `vertex_indices` (or `vertex_index`), in any
-//! order, of any number type. Everything else is passed over, with a warning that names it. In a text, each
+//! order, of any number type. Everything else is passed over, with a warning that names it; so are lines of
+//! the header that are neither declarations nor comments, such as `Created by Blender3D`. In a text, each
 //! line is one row of an element, as the header describes it.
 
 mod announced;

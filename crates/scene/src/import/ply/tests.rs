@@ -134,6 +134,23 @@ fn unknown_elements_are_passed_over() {
 }
 
 #[test]
+fn lines_of_the_header_that_are_no_comments_are_passed_over() {
+    let stray = SQUARE.replacen("element vertex", "Created by Blender3D\nelement vertex", 1);
+    let Imported { mesh, warnings } = read(&stray);
+    assert_eq!(mesh, read(SQUARE).mesh);
+    assert_eq!(warnings, ["ignored a line of the header that is no comment: line 3: 'Created by Blender3D'"]);
+    let several = stray.replacen("element face", "made for tests\nelement face", 1);
+    let words = "ignored 2 lines of the header that are no comments, the first line 3: 'Created by Blender3D'";
+    assert_eq!(read(several).warnings, [words]);
+    let mut file = binary("binary_big_endian", "float", "uchar", "int", big);
+    file.splice(4..4, *b"by hand\n");
+    assert_eq!(read(file).warnings, ["ignored a line of the header that is no comment: line 2: 'by hand'"]);
+    let (place, message) = fault(SQUARE.replacen("element vertex", "elment vertex", 1));
+    let expected = "expected 'element', 'property', 'comment' or 'end_header', found 'elment'";
+    assert_eq!((place, message.as_str()), (Place::Line(3), expected));
+}
+
+#[test]
 fn a_double_is_rounded_once_in_all_forms() {
     // Just above the middle between two floats: by way of the nearest double it rounds as the binary form does.
     let text = SQUARE.replace("float", "double").replace("1 1 0", "1.00000017881393432617187 1 0");

@@ -1,0 +1,171 @@
+//! Words of other programs, such as `box` and `fov`: what they are called here. One table,
+//! `words.txt`, gives the help of error reports and the page `docs/names.md`.
+
+use super::rule::Rule;
+use super::words;
+use std::sync::LazyLock;
+
+mod page;
+#[cfg(test)]
+mod tests;
+
+pub use page::page;
+
+/// The table as it is written.
+const TABLE: &str = include_str!("words.txt");
+
+/// The table's lines, read once: it is a constant.
+static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(|| {
+    let mut section = "";
+    let mut entries = Vec::new();
+    for line in TABLE.lines() {
+        match line.strip_prefix("## ") {
+            Some(title) => section = title,
+            None if !line.starts_with('#') => entries.extend(Entry::read(line, section)),
+            None => {}
+        }
+    }
+    entries
+});
+
+/// A line of the table.
+#[derive(Debug)]
+struct Entry {
+    /// The heading that it stands under.
+    section: &'static str,
+    /// Whether the words stand for a kind or another fixed word; else for a key.
+    is_kind: bool,
+    /// Definitions that the words would stand in.
+    owners: Vec<&'static str>,
+    /// The words.
+    words: Vec<&'static str>,
+    /// Steps to what they are called here.
+    target: Vec<&'static str>,
+    /// How it is written.
+    example: &'static str,
+    /// Programs that use these words.
+    programs: &'static str,
+}
+
+impl Entry {
+    fn read(line: &'static str, section: &'static str) -> Option<Self> {
+        let mut cells = line.split('|').map(str::trim);
+        let (place, names) = (cells.next()?, cells.next()?);
+        let (target, example, programs) = (cells.next()?, cells.next()?, cells.next()?);
+        let (sort, owners) = place.split_once(' ')?;
+        let list = |text: &'static str| text.split(',').map(str::trim).collect();
+        let (owners, words) = (list(owners), list(names));
+        let target = target.split('.').collect();
+        Some(Self { section, is_kind: sort == "kind", owners, words, target, example, programs })
+    }
+
+    fn holds(&self, word: &str) -> bool {
+        let word = plain(word);
+        self.words.iter().any(|known| plain(known) == word)
+    }
+
+    /// The last step of the target: the kind, word or key to write.
+    fn name(&self) -> &'static str {
+        self.target.last().copied().unwrap_or_default()
+    }
+
+    /// What leads to it: an owner, perhaps with its kind.
+    fn owner(&self) -> String {
+        self.target.split_last().map(|(_, owner)| owner.join(".")).unwrap_or_default()
+    }
+
+    /// The target in words, for a reader who looks elsewhere.
+    fn described(&self) -> String {
+        match self.target.as_slice() {
+            ["scene", key] => format!("`{key}` of the scene"),
+            ["object", key] => format!("`{key}` of an object"),
+            [family, kind] if is_kind_of(family, kind) => {
+                let article = words::article(kind);
+                format!("{article} `{kind}` {}", family.replace('_', " "))
+            }
+            [owner, key] => format!("`{key}` of `{owner}`"),
+            [family, kind, key] => format!("`{key}` of {} `{kind}` {family}", words::article(kind)),
+            _ => String::new(),
+        }
+    }
+
+    fn help(&self, word: &str, is_here: bool) -> String {
+        let what = if is_here { format!("called `{}`", self.name()) } else { self.described() };
+        format!("`{word}` is {what} here: write {}", self.example)
+    }
+}
+
+/// What is the same for people who write a word in their program's manner.
+fn plain(word: &str) -> String {
+    word.chars().filter(|character| !"_- ".contains(*character)).flat_map(char::to_lowercase).collect()
+}
+
+/// A definition's name as the table has it.
+fn noun(name: &str) -> String {
+    words::noun(name).replace(' ', "_")
+}
+
+fn is_kind_of(family: &str, kind: &str) -> bool {
+    let families = Rule::all().iter().filter(|rule| rule.name.is_some_and(|name| noun(name) == family));
+    families.into_iter().any(|rule| rule.kinds.iter().any(|(name, _)| *name == kind))
+}
+
+/// What the table calls an object, most exact first: `texture.mix`, `mix`, `texture`.
+fn owners(rule: &Rule) -> Vec<String> {
+    let mut owners = Vec::new();
+    let mut families = Vec::new();
+    for family in Rule::all() {
+        let Some(name) = family.name.filter(|_| !family.kinds.is_empty()).map(noun) else { continue };
+        let own = family.kinds.iter().filter(|(_, content)| std::ptr::eq(content.get(), rule));
+        for (kind, _) in own {
+            owners.extend([format!("{name}.{kind}"), (*kind).to_owned()]);
+            families.push(name.clone());
+        }
+    }
+    let is_root = Rule::root().is_some_and(|root| std::ptr::eq(root, rule));
+    owners.extend(if is_root { Some("scene".to_owned()) } else { rule.name.map(noun) });
+    owners.append(&mut families);
+    owners
+}
+
+fn entries(is_kind: bool, word: &str) -> impl Iterator<Item = &'static Entry> {
+    ENTRIES.iter().filter(move |entry| entry.is_kind == is_kind && entry.holds(word))
+}
+
+/// What the kind or fixed word `word` of a family is called here.
+pub fn kind(word: &str, family: &Rule) -> Option<String> {
+    let entry = kind_entry(word, family)?;
+    let is_here = family.name.map(noun) == Some(entry.owner()) && entry.target.len() == 2;
+    Some(entry.help(word, is_here))
+}
+
+/// The kind of the same family that goes by the foreign name `word`.
+pub fn kind_name(word: &str, family: &Rule) -> Option<&'static str> {
+    let entry = kind_entry(word, family).filter(|entry| entry.target.len() == 2);
+    entry.map(Entry::name).filter(|name| family.kinds.iter().any(|(kind, _)| kind == name))
+}
+
+fn kind_entry(word: &str, family: &Rule) -> Option<&'static Entry> {
+    let noun = family.name.map(noun)?;
+    let here = |entry: &&Entry| entry.owners.contains(&noun.as_str());
+    // Two families may go by the same noun: filters of pictures and of textures.
+    let known = |name: &str| family.words.contains(&name) || family.kinds.iter().any(|(kind, _)| *kind == name);
+    let fits = |entry: &&Entry| entry.owner() != noun || known(entry.name());
+    entries(true, word).filter(here).find(fits)
+}
+
+/// What the key `word` of an object is called here.
+pub fn key(word: &str, rule: &Rule) -> Option<String> {
+    owners(rule).iter().find_map(|owner| {
+        let here = entries(false, word).filter(|entry| entry.owners.contains(&owner.as_str()));
+        here.into_iter().find_map(|entry| key_help(word, entry, rule))
+    })
+}
+
+fn key_help(word: &str, entry: &Entry, rule: &Rule) -> Option<String> {
+    let is_owner = owners(rule).contains(&entry.owner());
+    let has_field = rule.fields.iter().flatten().any(|(name, _)| *name == entry.name());
+    // A key that only other kinds of the family have is no help.
+    let family_only = entry.target.len() == 2 && is_owner && !has_field;
+    (!family_only).then(|| entry.help(word, is_owner && has_field))
+}

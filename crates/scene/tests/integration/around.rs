@@ -1,0 +1,117 @@
+//! Mesh files given as scenes, and files of other programs.
+
+use crate::import_files::asset;
+use juggler_scene::{Bundle, Scene, SceneError};
+use juggler_tracer::integrator::AnyIntegrator;
+use std::fs;
+use std::path::Path;
+
+/// A tetrahedron with its base on y = 0.
+const TETRAHEDRON: &str = "v 0 0 0\nv 2 0 0\nv 0 0 2\nv 0 2 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+
+/// A tower along z, as printers have it, of one triangle in the plane x = 0.
+const TOWER: &str = "solid tower\nfacet normal 1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 0 0 8\n\
+                     endloop\nendfacet\nendsolid tower\n";
+
+fn message(name: &str, content: &[u8]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    let error = Scene::load(&path).map(|_| ()).unwrap_err().to_string();
+    error.replace(&format!("{}/", folder.path().display()), "")
+}
+
+/// The scene of a file or around a mesh, without mistakes or warnings.
+fn around(path: &Path) -> Scene {
+    let scene = Scene::load(path).unwrap();
+    assert!(scene.check().list().is_empty(), "{}: {}", path.display(), scene.check());
+    scene
+}
+
+#[test]
+fn a_mesh_is_a_scene_with_floor_light_and_camera() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tetrahedron.obj");
+    fs::write(&path, TETRAHEDRON).unwrap();
+    let scene = around(&path);
+    let description = &scene.description;
+    assert_eq!(description.title, "tetrahedron");
+    assert!(matches!(description.render.integrator, AnyIntegrator::Path(_)));
+    assert_eq!((description.objects.len(), description.lights.len()), (2, 1));
+    let compiled = scene.compile().unwrap();
+    assert_eq!(compiled.world.geometry().triangles, 4);
+    assert_eq!(scene.paths(), [path.clone()], "the mesh is watched");
+    // Edits and other frames work as for scene files.
+    let edited = scene.with_value("/materials/model/plastic/roughness", 0.1.into()).unwrap();
+    assert!(edited.compile().is_ok() && !edited.has_world_of(&scene));
+    fs::write(&path, TETRAHEDRON.replace("v 0 2 0", "v 0 5.5 0")).unwrap();
+    let again = scene.reload(&path).unwrap();
+    assert_ne!(again.description.camera, scene.description.camera);
+}
+
+#[test]
+fn printers_have_z_up() {
+    let bundle = Bundle::from_iter([("tower.stl".to_owned(), TOWER.as_bytes().to_vec())]);
+    let scene = Scene::from_bundle(bundle, "tower.stl").unwrap();
+    let bounds = scene.compile().unwrap().world.bounds();
+    assert!((bounds.max.y - 8.0).abs() < 1e-5 && bounds.max.z < 1e-5, "{bounds:?}");
+}
+
+/// A scene that is written to another folder still finds its files.
+#[test]
+fn files_are_named_from_the_folder_that_a_scene_is_written_to() {
+    let folder = tempfile::tempdir().unwrap();
+    for sub in ["models", "scenes"] {
+        fs::create_dir(folder.path().join(sub)).unwrap();
+    }
+    fs::write(folder.path().join("models/tetrahedron.obj"), TETRAHEDRON).unwrap();
+    let text = r#"{"version": 1, "objects": [{"shape": {"mesh": {"file": "../models/tetrahedron.obj"}}}]}"#;
+    let path = folder.path().join("scenes/first.json");
+    fs::write(&path, text).unwrap();
+    let scene = around(&path);
+    for (sub, name) in
+        [("scenes", "../models/tetrahedron.obj"), ("models", "tetrahedron.obj"), (".", "models/tetrahedron.obj")]
+    {
+        let folder = folder.path().join(sub);
+        let json = scene.to_json_in(&folder);
+        assert!(json.contains(&format!("\"file\": \"{name}\"")), "{json}");
+        let file = folder.join("second.json");
+        fs::write(&file, json).unwrap();
+        assert_eq!(around(&file).compile().unwrap().world.geometry().triangles, 4);
+    }
+}
+
+#[test]
+fn formats_that_are_not_read_yet_are_named() {
+    let gltf = message("car.glb", b"glTF\x02\0\0\0");
+    assert_eq!(gltf, "`car.glb`: glTF is not read yet; meshes in OBJ, PLY and STL are");
+    assert_eq!(message("car.gltf", br#"{"asset": {"version": "2.0"}}"#), gltf.replace("glb", "gltf"));
+    assert!(message("car.obj", b"Kaydara FBX Binary  \0").contains("FBX is not read yet"));
+    assert!(message("room.pov", b"// a room\nsphere { 0, 1 }").contains("docs/names.md"));
+    let in_scene = br#"{"version": 1, "objects": [{"shape": {"mesh": {"file": "car.glb"}}}]}"#;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("car.glb"), b"glTF\x02\0\0\0").unwrap();
+    let path = folder.path().join("scene.json");
+    fs::write(&path, in_scene).unwrap();
+    let scene = Scene::load(&path).unwrap();
+    assert!(scene.check().to_string().contains("car.glb`: glTF is not read yet"), "{}", scene.check());
+}
+
+#[test]
+fn broken_meshes_say_where() {
+    assert_eq!(
+        message("a.obj", b"v 0 0\n"),
+        "cannot read `a.obj`: line 1: expected a number for z, found the end of the line"
+    );
+    assert!(matches!(Scene::load("none.obj"), Err(SceneError::Read { .. })));
+}
+
+/// Real models, as far as they are there.
+#[test]
+fn models_of_the_assets_get_scenes() {
+    for name in ["obj/teapot.obj", "obj/spot/spot_triangulated.obj", "ply/suzanne.ply", "stl/featuretype.STL"] {
+        let Some(path) = asset(name) else { return };
+        let compiled = Scene::load(path).unwrap().compile().unwrap();
+        assert_eq!(compiled.cameras.len(), 1, "{name}");
+    }
+}
