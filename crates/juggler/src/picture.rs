@@ -370,7 +370,7 @@ pub fn render_to_file(scene: &Scene, settings: &Settings, path: impl AsRef<Path>
 
 /// Why a scene is rendered with its integrator, with these settings beside it.
 fn reason(scene: &Scene, settings: &Settings) -> IntegratorReason {
-    if settings.integrator.is_some() { IntegratorReason::Settings } else { scene.integrator().reason }
+    if settings.integrator.is_some() { IntegratorReason::Settings } else { scene.integrator_choice().reason }
 }
 
 #[cfg(test)]

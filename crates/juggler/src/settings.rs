@@ -215,7 +215,7 @@ mod tests {
             let wish = Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
             wish.apply(&scene()).map(|scene| scene.description.render.integrator)
         };
-        assert_eq!(apply("path", 4).unwrap(), Path { max_depth: 4, ..Path::default() }.into());
+        assert_eq!(apply("path", 4).unwrap(), Some(Path { max_depth: 4, ..Path::default() }.into()));
         assert!(apply("classic", 0).is_ok() && apply("path", 10_000).is_ok());
         for (integrator, depth) in [("path", 0), ("path", 10_001), ("classic", 1001)] {
             assert!(apply(integrator, depth).unwrap_err().to_string().contains(" to 10"), "{integrator} {depth}");

@@ -38,8 +38,12 @@ pub fn describe(file: &str, bounds: &Aabb, z_up: bool) -> Description {
     if z_up {
         model = model.rotated(Vec3::X, -90.0);
     }
-    let render =
-        Render { size: [800, 600], samples: 64, integrator: PathIntegrator::default().into(), ..Render::default() };
+    let render = Render {
+        size: [800, 600],
+        samples: 64,
+        integrator: Some(PathIntegrator::default().into()),
+        ..Render::default()
+    };
     let mut scene = Description {
         description: format!("A scene made around the mesh {file}"),
         title,

@@ -68,7 +68,7 @@ impl Scene {
     /// Sets how light is followed.
     #[must_use]
     pub fn integrator(mut self, integrator: impl Into<AnyIntegrator>) -> Self {
-        self.description.render.integrator = integrator.into();
+        self.description.render.integrator = Some(integrator.into());
         self
     }
 

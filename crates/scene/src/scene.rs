@@ -240,7 +240,7 @@ impl Scene {
             return Err(SceneError::Problems(warnings));
         }
         let settings = self.description.render.clone();
-        let integrator = self.integrator();
+        let integrator = self.integrator_choice();
         Ok(Compiled { cameras, course, settings, integrator, warnings, ..earlier.clone() })
     }
 
@@ -257,7 +257,7 @@ impl Scene {
         (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
             && a.background_light_group == b.background_light_group
             // What a scene without lights is lit by hangs on the integrator.
-            && (!a.lights.is_empty() || self.integrator().follows_paths() == other.integrator().follows_paths())
+            && (!a.lights.is_empty() || self.integrator_choice().follows_paths() == other.integrator_choice().follows_paths())
             && (&a.groups, &a.lights, &a.objects) == (&b.groups, &b.lights, &b.objects)
             && digests(a, &self.files()) == digests(b, &other.files())
             && same_motion()
@@ -283,7 +283,7 @@ impl Scene {
 
     /// The integrator that the scene is rendered with, and why: the one that it names, or the one that fits what it
     /// holds.
-    pub fn integrator(&self) -> IntegratorChoice {
+    pub fn integrator_choice(&self) -> IntegratorChoice {
         IntegratorChoice::of(&self.description)
     }
 

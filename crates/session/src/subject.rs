@@ -231,7 +231,7 @@ impl Subject {
             settings.max_depth = None;
         }
         let (mut render, mut tone) = (self.scene.description.render.clone(), self.scene.description.tone.clone());
-        render.integrator.get_or_insert_with(|| self.scene.integrator().integrator);
+        render.integrator.get_or_insert_with(|| self.scene.integrator_choice().integrator);
         settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error))?;
         render.camera = self.picture.view().render.camera;
         self.see(View { camera: self.picture.view().camera, render, tone })?;

@@ -133,9 +133,10 @@ pub fn check_scene(settings: &Settings, scene: &Scene) -> Result<(), Failure> {
     let wrong = |message: String| Err(Failure::Wrong(message));
     let (mut render, mut tone) = (scene.description.render.clone(), scene.description.tone.clone());
     Settings { max_depth: None, ..settings.clone() }.apply_to(&mut render, &mut tone)?;
-    let follows_paths = matches!(render.integrator, AnyIntegrator::Classic(_) | AnyIntegrator::Path(_));
+    let integrator = render.integrator.unwrap_or_else(|| scene.integrator_choice().integrator);
+    let follows_paths = matches!(integrator, AnyIntegrator::Classic(_) | AnyIntegrator::Path(_));
     if settings.max_depth.is_some() && !follows_paths {
-        let name = render.integrator.name();
+        let name = integrator.name();
         return wrong(format!(
             "--max-depth is for the integrators `classic` and `path`; `{name}` follows no paths whose depth has a limit"
         ));

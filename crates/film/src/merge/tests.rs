@@ -23,7 +23,7 @@ impl Folder {
     }
 
     /// Writes a part that holds this much.
-    fn part(&self, name: &str, description: &Description, units: &[(u64, std::ops::Range<u32>)]) -> PathBuf {
+    fn part(&self, name: &str, description: &Description, units: &[(u64, Range<u32>)]) -> PathBuf {
         let layout = description.layout();
         let tiles =
             units.iter().map(|(number, samples)| (*number, tile(layout.tile(*number).unwrap(), samples.clone())));
@@ -129,7 +129,7 @@ fn what_clamping_took_is_summed_over_all_parts() {
     assert!(expected > 0.0);
     for cut in [16, 48] {
         let folder = Folder::new();
-        let part = |name: &str, samples: std::ops::Range<u32>| {
+        let part = |name: &str, samples: Range<u32>| {
             let share = Share { samples: samples.clone(), ..Share::whole(SAMPLES) };
             let path = folder.path(name);
             let description = Description { share, clamped: true, ..description(REGION, SAMPLES) };
@@ -153,7 +153,7 @@ fn any_cut_and_any_way_of_joining_is_the_whole() {
     let layout = Layout::new(REGION);
     for round in 0..6 {
         let folder = Folder::new();
-        let mut parts: Vec<Vec<(u64, std::ops::Range<u32>)>> = vec![Vec::new(); 2 + round];
+        let mut parts: Vec<Vec<(u64, Range<u32>)>> = vec![Vec::new(); 2 + round];
         for tile in 0..layout.tiles() {
             let mut cuts: Vec<u32> =
                 (0..random.below(4)).map(|_| 16 * random.below(7) as u32).chain([0, SAMPLES]).collect();

@@ -36,7 +36,7 @@ fn a_mesh_is_a_scene_with_floor_light_and_camera() {
     let scene = around(&path);
     let description = &scene.description;
     assert_eq!(description.title, "tetrahedron");
-    assert!(matches!(description.render.integrator, AnyIntegrator::Path(_)));
+    assert!(matches!(description.render.integrator, Some(AnyIntegrator::Path(_))));
     assert_eq!((description.objects.len(), description.lights.len()), (2, 1));
     let compiled = scene.compile().unwrap();
     assert_eq!(compiled.world.geometry().triangles, 4);

@@ -29,10 +29,12 @@ fn scenes_of_the_classic_kind_stay_classic() {
         r#""background": {"gradient": {}}, "objects": []"#,
         r#""background": [0.2, 0.3, 0.4], "objects": []"#,
         &sphere(r#"{"phong": {"emission": [1, 1, 1], "reflection": 0.5, "transparency": 0.5}}"#),
-        &sphere(r#"{"mix": {"a": {"phong": {}}, "b": {"checkerboard": {"even": {"phong": {}}, "odd": {"phong": {}}}}}}"#),
+        &sphere(
+            r#"{"mix": {"a": {"phong": {}}, "b": {"checkerboard": {"even": {"phong": {}}, "odd": {"phong": {}}}}}}"#,
+        ),
         &sphere(r#"{"mask": {"material": {"phong": {}}, "opacity": 0.5}}"#),
     ] {
-        let choice = scene(members).integrator();
+        let choice = scene(members).integrator_choice();
         assert_eq!((choice.integrator.name(), &choice.reason), ("classic", &IntegratorReason::Classic), "{members}");
         assert_eq!(choice.reason.to_string(), "chosen because all lights and materials are of the classic kind");
     }
@@ -54,7 +56,8 @@ fn what_classic_cannot_do_asks_for_paths() {
         (sphere(r#"{"boundary": {"medium": {"scattering": 0.1}}}"#), "shade a surface by `boundary`"),
         (r#""background": {"sky": {}}, "objects": []"#.into(), "light a scene by `sky`, which `background` holds"),
         (
-            r#""groups": {"pair": [{"objects": [{"shape": "cuboid", "material": {"diffuse": {}}}]}]}, "objects": []"#.into(),
+            r#""groups": {"pair": [{"objects": [{"shape": "cuboid", "material": {"diffuse": {}}}]}]}, "objects": []"#
+                .into(),
             "shade a surface by `diffuse`, which `groups.pair[0].objects[0].material` holds",
         ),
         (
@@ -62,11 +65,11 @@ fn what_classic_cannot_do_asks_for_paths() {
             "light a scene by `area`, which `lights[1]` holds",
         ),
     ] {
-        let choice = scene(&members).integrator();
+        let choice = scene(&members).integrator_choice();
         let reason = choice.reason.to_string();
         assert_eq!(choice.integrator.name(), "path", "{members}");
         assert!(reason.starts_with("chosen because `classic` cannot ") && reason.contains(says), "{reason}");
-        let named = scene(&format!(r#""render": {{"integrator": "classic"}}, {members}"#)).integrator();
+        let named = scene(&format!(r#""render": {{"integrator": "classic"}}, {members}"#)).integrator_choice();
         assert_eq!((named.integrator.name(), named.reason), ("classic", IntegratorReason::Scene));
     }
 }
@@ -83,7 +86,8 @@ fn a_chosen_integrator_counts_as_one_that_is_named() {
     let open = scene(r#""objects": [{"shape": "sphere"}]"#);
     let path = scene(r#""render": {"integrator": "path"}, "objects": [{"shape": "sphere"}]"#);
     assert!(!open.has_world_of(&path), "the default lights differ");
-    let lit = |more: &str| scene(&format!(r#"{more} "lights": [{{"point": {{}}}}], "objects": [{{"shape": "sphere"}}]"#));
+    let lit =
+        |more: &str| scene(&format!(r#"{more} "lights": [{{"point": {{}}}}], "objects": [{{"shape": "sphere"}}]"#));
     assert!(lit("").has_world_of(&lit(r#""render": {"integrator": "path"},"#)));
 }
 
@@ -129,7 +133,8 @@ fn lights_that_light_nothing_are_warned_of() {
     assert_eq!(warnings(&classic(&format!(r#"{sky}, "lights": [{{"point": {{}}}}]"#))), []);
 }
 
-const AREA: &str = r#"{"area": {"shape": {"disk": {"radius": 0.5}}, "position": [0, 3, 0], "power": 50, "light_group": "top"}}"#;
+const AREA: &str =
+    r#"{"area": {"shape": {"disk": {"radius": 0.5}}, "position": [0, 3, 0], "power": 50, "light_group": "top"}}"#;
 
 #[test]
 fn an_area_light_is_a_shape_behind_all_objects() {
