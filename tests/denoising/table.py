@@ -5,7 +5,7 @@
 JUGGLER is the program (target/release/juggler). FOLDER keeps pictures, figures and the films that the filters start from, so that an
 interrupted run continues and another filter is tried without rendering anew. Where JUGGLER_OIDN names the folder of Open Image
 Denoise, it takes part. References are rendered with another seed. Errors and FLIP are those of `juggler compare`, seconds those of
-`--stats`.
+`--stats`: of rendering, and with a denoiser of `juggler merge` too, which reads and writes files besides.
 """
 import json
 import os
@@ -54,7 +54,7 @@ def measure(program, folder, scene, samples, way):
     picture, seconds = render(program, folder, scene, samples, 0, WAYS[way])
     if WAYS[way]:
         denoised = picture.removesuffix("jfilm") + "pfm"
-        seconds += run(program, "merge", picture, "-o", denoised, "--quiet")["seconds"]["denoise"]
+        seconds += run(program, "merge", picture, "-o", denoised, "--quiet")["seconds"]["total"]
         picture = denoised
     reference, _ = render(program, folder, scene, SCENES[scene][1], 9, [])
     found = run(program, "compare", picture, reference)
