@@ -2,12 +2,14 @@
 
     python3 tests/denoising/conservation.py [JUGGLER] [FOLDER] [SEEDS]
 
-JUGGLER is the program (target/release/juggler), FOLDER keeps references and results, so that an interrupted run continues, SEEDS is
-the number of seeds (32). The scenes are those of table.py at half their size. The script fails if
+JUGGLER is the program (target/release/juggler), SEEDS is the number of seeds (32). FOLDER keeps references and the films that the
+filter starts from, so that an interrupted run continues and another filter is tried without rendering anew. The scenes are those of
+table.py at half their size. The script fails if
 
 - the denoised mean of any seed and channel differs from the mean of the filter's own input by more than 0.5 %. A film part
   (`juggler render --denoise -o PART.jfilm --stats`) reports the mean of that input, `juggler merge PART.jfilm` denoises it;
-- a denoised pixel is brighter than 3 times the brightest of the 48 pixels around it, at a place where the reference is not.
+- a denoised pixel is brighter than 3 times the brightest of the 48 pixels around it, and neither that pixel of the reference nor
+  one beside it is.
 """
 import array
 import json
@@ -51,32 +53,32 @@ def bright(width, pixels):
 
 
 def picture(program, folder, scene, samples, seed, flags, name):
-    width, height = (int(length) // 2 for length in SCENES[scene][0].split("x"))
-    file = os.path.join(ROOT, "scenes", scene + ".json")
-    shot = ["--size", f"{width}x{height}", "--samples", str(samples), "--seed", str(seed), "--quiet"]
+    """A rendered file of that name and the mean of its light per channel; both are kept."""
     output = os.path.join(folder, name)
-    return output, run(program, "render", file, *shot, *flags, "-o", output)["film"]["mean"]
+    figures = output + ".json"
+    if not os.path.exists(figures):
+        width, height = (int(length) // 2 for length in SCENES[scene][0].split("x"))
+        file = os.path.join(ROOT, "scenes", scene + ".json")
+        shot = ["--size", f"{width}x{height}", "--samples", str(samples), "--seed", str(seed), "--quiet"]
+        mean = run(program, "render", file, *shot, *flags, "-o", output)["film"]["mean"]
+        with open(figures, "w") as kept:
+            json.dump(mean, kept)
+    with open(figures) as kept:
+        return output, json.load(kept)
 
 
 def reference(program, folder, scene):
     """Bright pixels of a picture of many samples, with their neighbors: noise may move them by a pixel."""
-    file = os.path.join(folder, f"reference-{scene}.pfm")
-    if not os.path.exists(file):
-        made, _ = picture(program, folder, scene, SCENES[scene][1], 99, [], "unfinished.pfm")
-        os.replace(made, file)
+    file, _ = picture(program, folder, scene, SCENES[scene][1], 99, [], f"reference-{scene}.pfm")
     return {(x + u, y + v) for x, y in bright(*brightness(file)) for u in (-1, 0, 1) for v in (-1, 0, 1)}
 
 
 def measure(program, folder, scene, samples, seed):
     """Means per channel of the filter's input and of the denoised picture, and the latter's bright pixels."""
-    file = os.path.join(folder, f"conservation-{scene}-{samples}-{seed}.json")
-    if not os.path.exists(file):
-        part, before = picture(program, folder, scene, samples, seed, ["--denoise"], "part.jfilm")
-        denoised = os.path.join(folder, "denoised.pfm")
-        after = run(program, "merge", part, "-o", denoised, "--quiet")["film"]["mean"]
-        found = sorted(bright(*brightness(denoised)))
-        json.dump({"before": before, "after": after, "bright": found}, open(file, "w"))
-    return json.load(open(file))
+    part, before = picture(program, folder, scene, samples, seed, ["--denoise"], f"{scene}-{samples}-{seed}.jfilm")
+    denoised = os.path.join(folder, "denoised.pfm")
+    after = run(program, "merge", part, "-o", denoised, "--quiet")["film"]["mean"]
+    return before, after, bright(*brightness(denoised))
 
 
 def main():
@@ -91,10 +93,11 @@ def main():
         allowed = reference(program, folder, scene)
         for samples in SAMPLES:
             results = [measure(program, folder, scene, samples, seed) for seed in range(1, seeds + 1)]
-            total = [sum(sum(result[key]) for result in results) for key in ("before", "after")]
-            pairs = [pair for result in results for pair in zip(result["before"], result["after"])]
+            before, after = ([means[k] for means in results] for k in (0, 1))
+            total = [sum(map(sum, means)) for means in (before, after)]
+            pairs = [pair for means in zip(before, after) for pair in zip(*means)]
             largest = max(abs(after / before - 1) for before, after in pairs if before > 0)
-            count = sum(tuple(place) not in allowed for result in results for place in result["bright"])
+            count = sum(place not in allowed for *_, places in results for place in places)
             failed |= largest > MEAN or count > 0
             row = f"{total[1] / total[0]:.6f} | {100 * largest:.5f} % | {count}"
             print(f"| {scene} | {samples} | {row} |", flush=True)

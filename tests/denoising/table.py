@@ -2,9 +2,10 @@
 
     python3 tests/denoising/table.py [JUGGLER] [FOLDER]
 
-JUGGLER is the program (target/release/juggler), FOLDER keeps pictures and figures, so that a run that was broken off goes on. Where
-JUGGLER_OIDN says where Open Image Denoise is, it takes part. References are rendered with another seed. Errors and FLIP are those of
-`juggler compare`, seconds those of `--stats`.
+JUGGLER is the program (target/release/juggler). FOLDER keeps pictures, figures and the films that the filters start from, so that an
+interrupted run continues and another filter is tried without rendering anew. Where JUGGLER_OIDN names the folder of Open Image
+Denoise, it takes part. References are rendered with another seed. Errors and FLIP are those of `juggler compare`, seconds those of
+`--stats`: of rendering, and with a denoiser of `juggler merge` too, which reads and writes files besides.
 """
 import json
 import os
@@ -35,19 +36,26 @@ def run(program, *arguments):
 
 
 def render(program, folder, scene, samples, seed, flags):
-    size = SCENES[scene][0]
+    """A picture or, with flags of a denoiser, the film that it starts from, and the seconds of rendering; both are kept."""
     name = "-".join([scene, str(samples), str(seed), *(flag.strip("-") for flag in flags)])
-    picture, figures = (os.path.join(folder, name + ending) for ending in (".pfm", ".json"))
+    picture, figures = (os.path.join(folder, name + ending) for ending in (".jfilm" if flags else ".pfm", ".json"))
     if not os.path.exists(figures):
         file = os.path.join(ROOT, "scenes", scene + ".json")
-        shot = ["--size", size, "--samples", str(samples), "--seed", str(seed), "--quiet"]
+        shot = ["--size", SCENES[scene][0], "--samples", str(samples), "--seed", str(seed), "--quiet"]
         stats = run(program, "render", file, *shot, *flags, "-o", picture)
-        json.dump(stats, open(figures, "w"))
-    return picture, json.load(open(figures))["seconds"]
+        with open(figures, "w") as kept:
+            json.dump(stats["seconds"]["render"], kept)
+    with open(figures) as kept:
+        return picture, json.load(kept)
 
 
 def measure(program, folder, scene, samples, way):
+    """relMSE, FLIP and seconds of a picture, denoised or not."""
     picture, seconds = render(program, folder, scene, samples, 0, WAYS[way])
+    if WAYS[way]:
+        denoised = picture.removesuffix("jfilm") + "pfm"
+        seconds += run(program, "merge", picture, "-o", denoised, "--quiet")["seconds"]["total"]
+        picture = denoised
     reference, _ = render(program, folder, scene, SCENES[scene][1], 9, [])
     found = run(program, "compare", picture, reference)
     return found["relative_mse"], found["flip"]["mean"], seconds
@@ -55,7 +63,7 @@ def measure(program, folder, scene, samples, way):
 
 def cells(found):
     error, flip, seconds = found
-    return f"{error:.5f} | {flip:.4f} | {seconds['render'] + seconds['denoise']:.2f}"
+    return f"{error:.5f} | {flip:.4f} | {seconds:.2f}"
 
 
 def main():
