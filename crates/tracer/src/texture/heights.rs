@@ -69,7 +69,7 @@ impl Heights {
     pub fn examples() -> [Self; 2] {
         let rough = Octaves { octaves: 16, lacunarity: 3.5, gain: 1.0, seed: 9 };
         let colors = Self { low: Rgb::new(0.5, 0.1, 0.2).into(), high: Rgb::splat(0.7).into(), ..Self::default() };
-        [Self::default(), Self { octaves: rough, mapping: Mapping::of(crate::texture::Space::Local), ..colors }]
+        [Self::default(), Self { octaves: rough, mapping: Mapping::of(Space::Local), ..colors }]
     }
 }
 

@@ -162,7 +162,7 @@ impl Image {
     /// For the contract tests, which have a picture of that name.
     pub fn examples() -> Vec<Self> {
         let other = Self { wrap_v: Some(Wrap::Black), channel: Channel::A, invert: true, ..Self::new("test") };
-        let planar = Self { mapping: Mapping::of(super::Space::Local), filter: Filter::Bilinear, ..Self::new("test") };
+        let planar = Self { mapping: Mapping::of(Space::Local), filter: Filter::Bilinear, ..Self::new("test") };
         vec![Self::new("test"), other, planar]
     }
 }

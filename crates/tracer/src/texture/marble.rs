@@ -102,7 +102,7 @@ impl CompiledMarble {
 impl Marble {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        let mapping = Mapping::of(crate::texture::Space::Local);
+        let mapping = Mapping::of(Space::Local);
         vec![Self::default(), Self { mapping, distortion: 1000.0, sharpness: 0.01, ..Self::default() }]
     }
 }

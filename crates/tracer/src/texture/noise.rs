@@ -70,7 +70,7 @@ impl Noise {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
         let world = Self { low: Rgb::new(0.5, 0.1, 0.2).into(), high: Rgb::splat(0.7).into(), ..Self::default() };
-        vec![Self::default(), Self { mapping: Mapping::of(crate::texture::Space::World), seed: 5, ..world }]
+        vec![Self::default(), Self { mapping: Mapping::of(Space::World), seed: 5, ..world }]
     }
 }
 

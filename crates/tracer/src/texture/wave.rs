@@ -149,7 +149,7 @@ impl Wave {
     pub fn examples() -> Vec<Self> {
         let rings = Self { shape: WaveShape::Rings, distortion: 5.0, ..Self::default() };
         let profiles = [WaveProfile::Sine, WaveProfile::Saw, WaveProfile::Triangle, WaveProfile::Square];
-        let mapping = Mapping::of(crate::texture::Space::World);
+        let mapping = Mapping::of(Space::World);
         profiles
             .map(|profile| Self { profile, mapping, ..rings.clone() })
             .into_iter()

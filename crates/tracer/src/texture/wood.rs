@@ -119,7 +119,7 @@ impl CompiledWood {
 impl Wood {
     /// For the contract tests.
     pub fn examples() -> Vec<Self> {
-        let mapping = Mapping::of(crate::texture::Space::Local);
+        let mapping = Mapping::of(Space::Local);
         vec![Self::default(), Self { mapping, distortion: 1000.0, grain: 1.0, ..Self::default() }]
     }
 }
