@@ -146,15 +146,20 @@ fn principled_glass_and_what_lies_over_it_vanishes() {
         r#""transmission": 0.5, "metallic": 0.5, "roughness": 0.2"#,
         r#""diffuse_transmission": 0.7, "medium": {"scattering": 1}"#,
     ];
-    let within = [0.2, 0.5, 1.0].map(|roughness| {
+    let within = [0.2, 1.0, 0.5].map(|roughness| {
         (format!(r#""transmission": 0.4, "metallic": 0.5, "ior": 2, "roughness": {roughness}"#), Some(2.0))
     });
-    let all: Vec<(String, Option<f64>)> =
-        outside.map(|numbers| (numbers.to_owned(), None)).into_iter().chain(within).collect();
+    let all: Vec<(String, Option<f64>)> = outside
+        .map(|numbers| (numbers.to_owned(), None))
+        .into_iter()
+        .chain(within.into_iter().skip(if is_deep() { 0 } else { 2 }))
+        .collect();
     for (numbers, ior) in &all {
         let material = format!(r#"{{"principled": {{"base_color": [1, 1, 1], {numbers}}}}}"#);
         let scale = ior.map_or(1.0, |ior| ior * ior);
-        let pixels: Vec<f64> = ball(&material, ior.is_some(), 32, 256).into_iter().map(|value| value / scale).collect();
+        let samples = if ior.is_some() { 256 } else { 144 };
+        let pixels: Vec<f64> =
+            ball(&material, ior.is_some(), 32, samples).into_iter().map(|value| value / scale).collect();
         let Measured { mean, sigma } = Measured::of(&pixels);
         println!("{material}, from within: {}: {mean:.5} ± {sigma:.5}", ior.is_some());
         let allowed = family_wise_deviations(all.len()) * sigma;
