@@ -60,9 +60,9 @@ fn scene(bytes: &[u8]) -> bool {
 }
 
 fn expression(bytes: &[u8]) -> bool {
-    let names: Names = [("frame".to_owned(), 7.25.into()), ("v".to_owned(), Quantity::Vector(vec![1.0, -2.0, 0.5]))]
-        .into_iter()
-        .collect();
+    let numbers = [("frame", 7.25), ("pi", std::f64::consts::PI)].map(|(name, value)| (name.to_owned(), value.into()));
+    let vector = ("v".to_owned(), Quantity::Vector(vec![1.0, -2.0, 0.5]));
+    let names: Names = numbers.into_iter().chain([vector]).collect();
     let value = evaluate(&String::from_utf8_lossy(bytes), &names);
     value.as_ref().is_ok_and(|value| {
         assert!(value.is_none_or(f64::is_finite), "an expression has the value {value:?}");

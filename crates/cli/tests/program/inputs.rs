@@ -72,7 +72,7 @@ fn scenes_name_what_is_no_file() {
         ];
         for scene in scenes {
             fs::write(folder.path("a.json"), &scene).unwrap();
-            let message = folder.bad("check a.json", 2);
+            let message = folder.bad("check a.json", 1);
             assert!(message.contains(words) && message.contains(&format!("{name}.")), "{scene}: {message}");
             folder.bad("render a.json -o a.png --max-memory 1G", 2);
         }

@@ -256,7 +256,7 @@ fn pictures_that_end_by_noise_or_time_say_how_many_samples_they_got() {
     for shard in 0..2 {
         folder.good(&format!("{line} -q --shard {shard}/2 -o {shard}.jfilm"));
     }
-    let merged = folder.good("merge 0.jfilm 1.jfilm -o b.png --stats -").stdout;
+    let merged = folder.good("merge 0.jfilm 1.jfilm -o b.png --stats - -q").stdout;
     assert!(fs::read(folder.path("a.png")).unwrap() == fs::read(folder.path("b.png")).unwrap());
     assert_eq!(serde_json::from_str::<Value>(&merged).unwrap()["samples_per_pixel"], *spread);
     let run = folder.run(&format!("render {BALL} --time 3 -o t.png --progress json"));

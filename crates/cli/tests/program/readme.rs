@@ -53,13 +53,14 @@ fn typed(folder: &Folder, line: &str) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Presses Ctrl-C as soon as the program has its own way of taking that.
+/// Presses Ctrl-C as soon as the program has its own way of taking that. The program watches for
+/// SIGTERM next; shells watch for SIGINT, but not for SIGTERM.
 fn interrupt(child: &Child) {
     let status = format!("/proc/{}/status", child.id());
     let catches = || {
         let status = fs::read_to_string(&status).unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).map(str::trim);
-        mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask & 2 != 0)
+        mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask & (1 << 14) != 0)
     };
     wait_until("the program to watch for signals", catches);
     harness::signal(child, "-INT");

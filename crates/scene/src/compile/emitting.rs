@@ -155,8 +155,8 @@ mod tests {
     #[test]
     fn too_many_emitters_are_refused_where_they_stand() {
         let many = r#"{"group": "many", "material": "lamp"}"#;
-        assert_eq!(scene(&vec![many; 4].join(", ")).check().errors(), 0);
-        let problems = scene(&vec![many; 5].join(", ")).check();
+        assert_eq!(scene(&[many; 4].join(", ")).check().errors(), 0);
+        let problems = scene(&[many; 5].join(", ")).check();
         let problem = &problems.list()[0];
         assert_eq!((problems.errors(), problem.path.as_str()), (1, "objects[5]"));
         assert!(

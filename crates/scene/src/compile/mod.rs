@@ -118,28 +118,17 @@ impl Assembly {
         let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
         let mut names = Names::of(scene);
-        let mut placed = match count::count(scene) {
-            Ok(counts) => placing::place(scene, moments, &counts, files, &mut materials, &mut findings),
-            Err(problems) => {
-                findings.extend(problems);
-                (Vec::new(), Vec::new())
-            }
-        };
+        let mut placed = placed(scene, moments, files, &mut materials, &mut findings);
         let glows = materials.glows() || background.as_ref().is_some_and(|b| lights(&integrator, b));
         let lit = glows || !scene.lights.is_empty();
         let (bounds, farthest) = (bounds(&placed.0), farthest(&placed.0, &placed.1));
         areas::add(scene, moments, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
         let (cameras, course) = cameras(scene, moments, &bounds, &farthest, &mut findings);
-        let lights = if lit {
-            lamps(&sources, moments, files, &names)
-        } else {
-            defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect()
-        };
+        let default = || defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect();
+        let lights = if lit { lamps(&sources, moments, files, &names) } else { default() };
         let illuminance = illuminance::at_the_middle(&lights, lit, &bounds);
-        if lit && !glows && areas::of(&scene.lights).next().is_none() {
-            findings.extend(illuminance::warning(scene, &lights, &bounds));
-        }
+        findings.extend((lit && !glows).then(|| illuminance::warning(scene, &lights, &bounds)).flatten());
         let labels = names.labels(scene, entries);
         let background = background.unwrap_or_else(|| defaults::background(lit));
         let materials = materials.finish(&mut names, &mut findings);
@@ -167,6 +156,24 @@ impl Assembly {
         let Self { cameras, course, names, integrator, bounds, illuminance, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
         Compiled { world, cameras, course, settings, integrator, bounds, warnings, names, illuminance }
+    }
+}
+
+/// Every object in its place, and the number of the first shape of each of the scene's objects. Too many objects are
+/// reported, and none of them is placed.
+fn placed(
+    scene: &Description,
+    moments: &[Description],
+    files: Files<'_>,
+    materials: &mut materials::Materials,
+    findings: &mut Vec<Finding>,
+) -> (Vec<Object>, Vec<u32>) {
+    match count::count(scene) {
+        Ok(counts) => placing::place(scene, moments, &counts, files, materials, findings),
+        Err(problems) => {
+            findings.extend(problems);
+            (Vec::new(), Vec::new())
+        }
     }
 }
 

@@ -40,7 +40,7 @@ fn a_mesh_is_a_scene_with_floor_light_and_camera() {
     assert_eq!((description.objects.len(), description.lights.len()), (2, 1));
     let compiled = scene.compile().unwrap();
     assert_eq!(compiled.world.geometry().triangles, 4);
-    assert_eq!(scene.paths(), [path.clone()], "the mesh is watched");
+    assert_eq!(scene.paths(), std::slice::from_ref(&path), "the mesh is watched");
     // Edits and other frames work as for scene files.
     let edited = scene.with_value("/materials/model/plastic/roughness", 0.1.into()).unwrap();
     assert!(edited.compile().is_ok() && !edited.has_world_of(&scene));

@@ -290,7 +290,7 @@ mod tests {
             environment.prepare().unwrap();
             assert_eq!((environment.mean(), at(&environment, Vec3::X)), (Rgb::BLACK, Rgb::BLACK));
         }
-        environment.set_panorama(Arc::new(panorama(1e38).unwrap()));
+        environment.set_panorama(Arc::new(panorama(1e30).unwrap()));
         assert!(environment.prepare().is_ok());
         assert_eq!(Environment { scale: 10.0, ..environment }.prepare().unwrap_err().field, "scale");
     }

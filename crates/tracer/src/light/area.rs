@@ -40,12 +40,12 @@ pub struct Area {
     /// Radiance of the front in watts per square scene unit and steradian, times `color`: how bright the surface looks.
     /// 1 without it and without `power`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub radiance: Option<f32>,
     /// Radiant flux of the whole surface in watts per channel, times `color`, instead of `radiance`: a larger surface
     /// of the same power is less bright.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e30))]
     pub power: Option<f32>,
     /// Light group: its light is written to an AOV of its own.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -183,7 +183,7 @@ impl Light for Area {
         }
         if let Some(point) = self.look_at {
             let towards = (point - self.position).length_squared();
-            let usable = towards >= f32::MIN_POSITIVE && towards < f32::INFINITY;
+            let usable = (f32::MIN_POSITIVE..f32::INFINITY).contains(&towards);
             let message = || "`look_at` must be finite, and another point than `position`".to_owned();
             usable.then_some(()).ok_or_else(|| InvalidLight { field: "look_at", message: message() })?;
         }

@@ -64,7 +64,7 @@ fn power_is_the_integral_over_directions() {
         AnyLight::Area(area) => Some((light.clone(), area.position)),
         _ => None,
     }) {
-        let (radius, count, watts) = (50.0f32, 200_000, watts(&light));
+        let (radius, count, watts) = (50.0f32, 1_000_000, watts(&light));
         light.prepare();
         let (stated, mut sum) = (f64::from(light.power(radius)), 0.0);
         for _ in 0..count {
@@ -216,7 +216,7 @@ fn says_what_is_wrong() {
         (r#"{"spot": {"extent": {"square": {"side": 1e39}}}}"#, "extent.square.side"),
         (r#"{"point": {"power": -1}}"#, "power"),
         (r#"{"point": {"power": 5, "intensity": 1}}"#, "power"),
-        (r#"{"point": {"power": 1e38, "color": [1e38, 0, 0]}}"#, "power"),
+        (r#"{"point": {"power": 1e20, "color": [1e20, 0, 0]}}"#, "power"),
         (r#"{"spot": {"power": 5, "intensity": 1}}"#, "power"),
         (r#"{"area": {"power": 5, "radiance": 1}}"#, "power"),
         (r#"{"area": {"power": 1e38, "shape": {"disk": {"radius": 1e-10}}}}"#, "power"),

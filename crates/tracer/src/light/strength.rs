@@ -1,7 +1,7 @@
 //! How strong a light is: a number of its own measure, or its radiant flux in watts.
 
 use super::{InvalidLight, either, in_range};
-use juggler_math::Rgb;
+use juggler_math::{MAX_LIGHT, Rgb};
 
 /// The two fields of which a light has at most one.
 #[derive(Clone, Copy, Debug)]
@@ -19,10 +19,13 @@ impl Strength {
     pub fn check(self, color: Rgb, total: Rgb) -> Result<(), InvalidLight> {
         let Self { name, value, power } = self;
         either(("power", power.is_some()), (name, value.is_some()))?;
-        color.to_array().iter().try_for_each(|v| in_range("color", *v, 0.0, f32::MAX))?;
+        color.to_array().iter().try_for_each(|v| in_range("color", *v, 0.0, MAX_LIGHT))?;
         let field = if power.is_some() { "power" } else { name };
-        in_range(field, power.or(value).unwrap_or(0.0), 0.0, f32::MAX)?;
-        let message = || format!("`color` times `{field}` is too large a number");
-        if total.is_finite() { Ok(()) } else { Err(InvalidLight { field, message: message() }) }
+        in_range(field, power.or(value).unwrap_or(0.0), 0.0, MAX_LIGHT)?;
+        if total.max_channel() <= MAX_LIGHT {
+            return Ok(());
+        }
+        let message = format!("`color` times `{field}` must not exceed {MAX_LIGHT:e} in any channel");
+        Err(InvalidLight { field, message })
     }
 }

@@ -241,6 +241,8 @@ fn heads_are_checked() {
 fn heads_of_what_no_picture_can_be_are_refused_by_name() {
     let refused = |change: &dyn Fn(&mut Description)| {
         let mut part = description(TINY, 21);
+        // A head without any layers says nothing of them.
+        part.layers.masks = true;
         change(&mut part);
         forged_head(&Head { layers: layers(&part), part })
     };
