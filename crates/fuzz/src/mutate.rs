@@ -116,10 +116,15 @@ pub fn mend_part(bytes: &mut [u8]) {
         let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
         four.map_or(0, u32::from_le_bytes) as usize
     };
-    let (head, count) = (number(bytes, 12), number(bytes, 24));
+    let count = number(bytes, 24);
     let Some(index) = (total - 32).checked_sub(count.saturating_mul(ENTRY)) else { return };
+    // The head takes what the chunks leave.
+    let entries = (0..count).map(|entry| index + entry * ENTRY);
+    let chunks = entries.clone().fold(0_usize, |sum, entry| sum.saturating_add(number(bytes, entry + 8)));
+    let Some(head) = index.checked_sub(PRELUDE).and_then(|room| room.checked_sub(chunks)) else { return };
+    bytes.iter_mut().skip(12).zip((head as u32).to_le_bytes()).for_each(|(byte, new)| *byte = new);
     let mut offset = PRELUDE + head;
-    for entry in (0..count).map(|entry| index + entry * ENTRY) {
+    for entry in entries {
         let length = number(bytes, entry + 8);
         let Some(chunk) = bytes.get(offset..offset.saturating_add(length)) else { break };
         let hash = *blake3::hash(chunk).as_bytes();

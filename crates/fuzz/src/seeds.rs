@@ -29,7 +29,7 @@ const EXPRESSIONS: [&str; 5] = [
     "-(sin(frame) ^ 2 ^ -1) % 3",
     "clamp(v.y, 0, 1) + min(1, max(2, 3))",
     "((((1.5e-3))))",
-    "frame >= 2 && v.z < 1 ? 1 : 0",
+    "(frame >= 2) * (v.z < 1)",
 ];
 
 const MESSAGES: [&str; 7] = [
