@@ -3,6 +3,7 @@
 //! `.NAME.part` and locked by the process that writes it; the next process to write NAME removes
 //! one that a killed process has left.
 
+use crate::regular;
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
 use std::io::{self, Write};
@@ -89,7 +90,7 @@ fn is_ours(file: &NamedTempFile) -> bool {
 /// Removes a file that no process has locked; whether it did.
 fn remove_abandoned(path: &Path) -> bool {
     let is_file = fs::symlink_metadata(path).is_ok_and(|file| file.is_file());
-    let Some(file) = is_file.then(|| File::open(path).ok()).flatten() else { return false };
+    let Some(file) = is_file.then(|| regular::open(path).ok()).flatten() else { return false };
     file.try_lock().is_ok() && is_same(&file, path) && fs::remove_file(path).is_ok()
 }
 

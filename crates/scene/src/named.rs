@@ -1,8 +1,8 @@
 //! Scenes as people name them: a file, or a scene that is part of the program.
 
 use crate::presets::built_in_scenes;
-use crate::scene::{Scene, SceneError};
 use crate::suggest::closest;
+use crate::{Scene, SceneError};
 use std::path::Path;
 
 /// Most names of files that are looked through for what was meant.

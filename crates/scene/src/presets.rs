@@ -1,8 +1,8 @@
 //! Scenes that are part of the program.
 
 use crate::document::{FileId, parse};
-use crate::scene::{Scene, SceneError};
 use crate::suggest::meant_or_all;
+use crate::{Scene, SceneError};
 
 /// A scene that is part of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -94,10 +94,12 @@ fn unsafe_stands_only_where_it_was_agreed_on() {
     assert!(workspace.contains("[workspace.lints.rust]\nunsafe_code = \"forbid\"\n"));
 }
 
-/// Files that open others by themselves: the one that every reader opens its input with, what reads from the system, and what
-/// tests and measures.
+/// Files that open others by themselves: the one that every reader opens its input with, what reads from the system or what
+/// the program itself wrote, and what tests and measures.
 const OPENERS: &[&str] = &[
     "bvh/benches/traverse.rs",
+    "cli/src/command/render/folder.rs",
+    "cli/src/interrupt.rs",
     "cli/src/stats.rs",
     "denoise/examples/evaluate.rs",
     "fuzz/src/bombs/run.rs",
