@@ -78,6 +78,8 @@ fn one_page_steers_and_the_others_watch() {
     first.told("wheel", |wheel| wheel["steering"] == false);
     // A page that goes leaves the wheel; of several, whoever turns it next has it.
     let mut third = serving.page();
+    // It has come before the second one goes, or the first would be alone for a moment.
+    third.told("wheel", |wheel| wheel["watching"] == 3);
     drop(second);
     first.told("wheel", |wheel| wheel["free"] == true && wheel["watching"] == 2);
     first.say(r#"{"edit": {"fly": {"yaw_degrees": 5}}}"#);
