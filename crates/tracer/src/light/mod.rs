@@ -1,7 +1,8 @@
 //! Lights: what arrives at a point, and from where.
 
 use crate::emitter::LightBounds;
-use juggler_math::{MAX_LIGHT, Rgb, Vec2, Vec3, range};
+use juggler_math::{Rgb, Vec2, Vec3, range};
+use strength::Strength;
 
 mod ambient;
 mod area;
@@ -126,13 +127,7 @@ fn either((field, has): (&'static str, bool), (other, has_other): (&'static str,
 }
 
 fn check_color(color: Rgb, intensity: f32) -> Result<(), InvalidLight> {
-    color.to_array().iter().try_for_each(|channel| in_range("color", *channel, 0.0, MAX_LIGHT))?;
-    in_range("intensity", intensity, 0.0, MAX_LIGHT)?;
-    if (color * intensity).max_channel() <= MAX_LIGHT {
-        return Ok(());
-    }
-    let message = format!("`color` times `intensity` must not exceed {MAX_LIGHT:e} in any channel");
-    Err(InvalidLight { field: "intensity", message })
+    Strength { name: "intensity", value: Some(intensity), power: None }.check(color, color * intensity)
 }
 
 fn check_position(position: Vec3) -> Result<(), InvalidLight> {
