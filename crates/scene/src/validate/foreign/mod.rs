@@ -39,6 +39,8 @@ struct Entry {
     owners: Vec<&'static str>,
     /// The words.
     words: Vec<&'static str>,
+    /// The same in the form that they are compared in.
+    plain_words: Vec<String>,
     /// Steps to what they are called here.
     target: Vec<&'static str>,
     /// How it is written.
@@ -54,14 +56,10 @@ impl Entry {
         let (target, example, programs) = (cells.next()?, cells.next()?, cells.next()?);
         let (sort, owners) = place.split_once(' ')?;
         let list = |text: &'static str| text.split(',').map(str::trim).collect();
-        let (owners, words) = (list(owners), list(names));
+        let (owners, words): (Vec<_>, Vec<&str>) = (list(owners), list(names));
+        let plain_words = words.iter().map(|word| plain(word)).collect();
         let target = target.split('.').collect();
-        Some(Self { section, is_kind: sort == "kind", owners, words, target, example, programs })
-    }
-
-    fn holds(&self, word: &str) -> bool {
-        let word = plain(word);
-        self.words.iter().any(|known| plain(known) == word)
+        Some(Self { section, is_kind: sort == "kind", owners, words, plain_words, target, example, programs })
     }
 
     /// The last step of the target: the kind, word or key to write.
@@ -129,7 +127,8 @@ fn owners(rule: &Rule) -> Vec<String> {
 }
 
 fn entries(is_kind: bool, word: &str) -> impl Iterator<Item = &'static Entry> {
-    ENTRIES.iter().filter(move |entry| entry.is_kind == is_kind && entry.holds(word))
+    let word = plain(word);
+    ENTRIES.iter().filter(move |entry| entry.is_kind == is_kind && entry.plain_words.contains(&word))
 }
 
 /// What the kind or fixed word `word` of a family is called here.
@@ -156,14 +155,16 @@ fn kind_entry(word: &str, family: &Rule) -> Option<&'static Entry> {
 
 /// What the key `word` of an object is called here.
 pub fn key(word: &str, rule: &Rule) -> Option<String> {
-    owners(rule).iter().find_map(|owner| {
-        let here = entries(false, word).filter(|entry| entry.owners.contains(&owner.as_str()));
-        here.into_iter().find_map(|entry| key_help(word, entry, rule))
+    let entries: Vec<&Entry> = entries(false, word).collect();
+    let owners = if entries.is_empty() { Vec::new() } else { owners(rule) };
+    owners.iter().find_map(|owner| {
+        let here = entries.iter().filter(|entry| entry.owners.contains(&owner.as_str()));
+        here.into_iter().find_map(|entry| key_help(word, entry, rule, &owners))
     })
 }
 
-fn key_help(word: &str, entry: &Entry, rule: &Rule) -> Option<String> {
-    let is_owner = owners(rule).contains(&entry.owner());
+fn key_help(word: &str, entry: &Entry, rule: &Rule, owners: &[String]) -> Option<String> {
+    let is_owner = owners.contains(&entry.owner());
     let has_field = rule.fields.iter().flatten().any(|(name, _)| *name == entry.name());
     // A key that only other kinds of the family have is no help.
     let family_only = entry.target.len() == 2 && is_owner && !has_field;
