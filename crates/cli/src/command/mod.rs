@@ -6,8 +6,10 @@ use clap::Subcommand;
 mod bench;
 mod check;
 mod compare;
+mod completions;
 mod convert;
 mod info;
+mod man;
 mod merge;
 mod probe;
 mod relight;
@@ -52,6 +54,11 @@ pub enum Command {
     Serve(serve::Serve),
     /// Measure this machine
     Bench(bench::Bench),
+    /// Print what a shell needs to complete commands and flags
+    #[command(after_help = completions::EXAMPLES)]
+    Completions(completions::Completions),
+    /// Print a manual page, or write those of all commands
+    Man(man::Manual),
 }
 
 impl Command {
@@ -73,6 +80,8 @@ impl Command {
             #[cfg(feature = "serve")]
             Self::Serve(serve) => serve.run(),
             Self::Bench(bench) => bench.run(),
+            Self::Completions(completions) => completions.run(),
+            Self::Man(manual) => manual.run(),
         }
     }
 }

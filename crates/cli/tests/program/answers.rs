@@ -54,8 +54,29 @@ fn short_help_fits_a_screen() {
     let lines = |line: &str| folder.good(line).stdout.lines().count();
     assert!((24..=40).contains(&lines("render -h")), "{}", folder.good("render -h").stdout);
     assert!(lines("render --help") > 100);
-    for command in ["", "check", "info", "merge", "relight", "convert", "probe", "compare", "bench"] {
+    for command in
+        ["", "check", "info", "merge", "relight", "convert", "probe", "compare", "bench", "man", "completions"]
+    {
         assert!(lines(&format!("{command} -h")) <= 40, "{command}");
+    }
+}
+
+#[test]
+fn shells_and_manuals_know_all_flags() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = folder.good(&format!("completions {shell}")).stdout;
+        assert!(["render", "white-balance", "merge"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+    folder.bad("completions csh", 2);
+    assert!(folder.good("man").stdout.contains("juggler\\-render"));
+    let page = folder.good("man render").stdout;
+    assert!(page.contains(".TH") && page.contains("white\\-balance") && page.contains("SLURM_ARRAY_TASK_ID"), "{page}");
+    assert!(folder.bad("man rendr", 2).contains("did you mean `render`?"));
+    fs::create_dir(folder.path("man1")).unwrap();
+    folder.good("man --folder man1");
+    for name in ["juggler.1", "juggler-render.1", "juggler-merge.1"] {
+        assert!(folder.path("man1").join(name).exists(), "{name}");
     }
 }
 
