@@ -17,7 +17,7 @@
 //! the next levels, the rest to the whole picture.
 
 use crate::prepare::is_known;
-use crate::{Noisy, blur};
+use crate::{Noisy, blur, ceiling};
 use juggler_math::Rgb;
 use rayon::prelude::*;
 
@@ -58,19 +58,27 @@ type Light = [f64; 3];
 pub(crate) fn conserve(noisy: &Noisy, pixels: &mut [Rgb]) {
     let input: Vec<Rgb> = (0..pixels.len()).into_par_iter().map(|i| input(noisy, i).unwrap_or(pixels[i])).collect();
     let noise: Vec<f32> = (0..pixels.len()).into_par_iter().map(|i| variance(noisy, i)).collect();
-    for level in LEVELS {
-        if level.spacing < noisy.width.max(noisy.height) {
-            let nodes = Nodes::new(noisy.width, noisy.height, level.spacing);
-            let changes = level.changes(&nodes, &input, &noise, pixels);
-            nodes.scale(&changes, pixels);
-        }
-    }
+    let (fine, coarse): (Vec<Level>, Vec<Level>) = LEVELS.into_iter().partition(|level| level.is_wiener);
+    scale_by(&fine, noisy, &input, &noise, pixels);
+    ceiling::dim(noisy, pixels);
+    scale_by(&coarse, noisy, &input, &noise, pixels);
     let (wanted, found) = (total(&input), total(pixels));
     let factor = each(|k| {
         let factor = wanted[k] / found[k];
         if factor.is_finite() { factor.clamp(WHOLE[0], WHOLE[1]) } else { 1.0 }
     });
     pixels.par_iter_mut().for_each(|pixel| *pixel = scaled(*pixel, factor));
+}
+
+/// Scales neighborhoods on grids, one after the other.
+fn scale_by(levels: &[Level], noisy: &Noisy, input: &[Rgb], noise: &[f32], pixels: &mut [Rgb]) {
+    for level in levels {
+        if level.spacing < noisy.width.max(noisy.height) {
+            let nodes = Nodes::new(noisy.width, noisy.height, level.spacing);
+            let changes = level.changes(&nodes, input, noise, pixels);
+            nodes.scale(&changes, pixels);
+        }
+    }
 }
 
 /// Input of a pixel: the mean of the halves that are known.

@@ -15,10 +15,11 @@
 //! 4. The filtered halves and the unfiltered ones tell how wrong the filter is compared with the noise; by that the input is
 //!    mixed in (`blend`), so that pictures of many samples are left as they are.
 //! 5. Single bright pixels that are left are cut (`speckles`), and every neighborhood and the whole picture get the mean of the
-//!    input (`energy`).
+//!    input (`energy`); in between, pixels that are brighter than both halves allow are dimmed (`ceiling`).
 
 mod blend;
 mod blur;
+mod ceiling;
 mod energy;
 mod features;
 mod grid;
