@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// Largest brightness of a pixel, in parts of the brightness of its brighter half.
 const FACTOR: f32 = 1.2;
 /// Margin for noise, in usual differences of the halves around the pixel.
-const MARGIN: f32 = 2.0;
+const MARGIN: f32 = 4.0;
 /// Pixels to each side that the usual difference is the mean of.
 const REACH: usize = 3;
 

@@ -20,9 +20,9 @@ const GROUP: u64 = 256;
 const RAY: u64 = 1024;
 const SHADOW: u64 = 96;
 /// Bytes of an object that is stored, while the world is built.
-const OBJECT: u64 = 640;
+const OBJECT: u64 = 768;
 /// Bytes of a shape that emits light, while the world is built.
-const EMITTER: u64 = 896;
+const EMITTER: u64 = 768;
 /// Bytes of a triangle that stands in the scene itself, while the world is built.
 const TRIANGLE: u64 = 160;
 

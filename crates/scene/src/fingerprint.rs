@@ -6,14 +6,16 @@
 //! samples are taken: a picture that is extended to more samples stays the same picture.
 
 use crate::compile::{Files, light_files, pictures};
-use crate::description::{Description, Object};
+use crate::description::{Description, Object, Render};
 use crate::integrator::IntegratorChoice;
 use crate::path::Path;
+use juggler_imaging::Tone;
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::shape::AnyShape;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::ser::Formatter;
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 /// Changes when the same description comes to mean another picture.
@@ -27,29 +29,39 @@ pub struct Fingerprint(BTreeMap<String, String>);
 impl Fingerprint {
     /// Of a description, what it is at `moments` while the shutter is open, and the files it names.
     pub(crate) fn of(scene: &Description, moments: &[Description], files: &Files<'_>) -> Self {
-        let mut bare = scene.clone();
-        bare.title.clear();
-        bare.description.clear();
-        bare.animation = Default::default();
-        bare.tone = Default::default();
-        bare.render.samples = 0;
-        bare.render.integrator = Some(IntegratorChoice::of(scene).integrator);
-        bare.camera = camera_of(scene).cloned();
-        bare.cameras.clear();
-        bare.render.camera = None;
+        // Titles, the animation's length, the tone curve and cameras that are not used decide no pixel.
+        let settings = Render {
+            samples: 0,
+            integrator: Some(IntegratorChoice::of(scene).integrator),
+            camera: None,
+            ..scene.render.clone()
+        };
         let mut parts = Self::default();
-        // Descriptions are plain data: they can be written.
-        let json = serde_json::to_value(&bare).unwrap_or_default();
-        for (key, value) in json.as_object().into_iter().flatten() {
-            match value.as_object() {
-                Some(settings) if key == "render" => settings.iter().for_each(|(key, value)| match value.as_str() {
-                    Some(text) => parts.insert(&format!("render.{key}"), text),
-                    None => parts.insert(&format!("render.{key}"), &value.to_string()),
-                }),
-                _ if is_nothing(value) => {}
-                _ => parts.insert(key, &digest(value.to_string().as_bytes())),
+        for (key, value) in serde_json::to_value(&settings).unwrap_or_default().as_object().into_iter().flatten() {
+            match value.as_str() {
+                Some(text) => parts.insert(&format!("render.{key}"), text),
+                None => parts.insert(&format!("render.{key}"), &value.to_string()),
             }
         }
+        let Description { version, include, variables, background, background_light_group, .. } = scene;
+        let Description { textures, materials, groups, lights, objects, .. } = scene;
+        parts.insert("version", &digest_of(version));
+        // The tone curve decides no pixel, but files on disk carry the hash of the default one.
+        parts.insert("tone", &digest_of(&Tone::default()));
+        parts.insert_list("include", include, include.len());
+        parts.insert_list("variables", variables, variables.len());
+        parts.insert_list("camera", &camera_of(scene), usize::from(camera_of(scene).is_some()));
+        parts.insert_list("background", background, usize::from(background.is_some()));
+        parts.insert_list(
+            "background_light_group",
+            background_light_group,
+            usize::from(background_light_group.is_some()),
+        );
+        parts.insert_list("textures", textures, textures.len());
+        parts.insert_list("materials", materials, materials.len());
+        parts.insert_list("groups", groups, groups.len());
+        parts.insert_list("lights", lights, lights.len());
+        parts.insert_list("objects", objects, objects.len());
         if !moments.is_empty() {
             let all: Vec<_> = moments.iter().map(|at| (&at.groups, &at.lights, &at.objects)).collect();
             parts.insert("motion", &digest(&serde_json::to_vec(&all).unwrap_or_default()));
@@ -70,13 +82,19 @@ impl Fingerprint {
         part.push_str(value);
     }
 
+    /// Adds the hash of a part of the scene that has `count` entries; a part without entries is left out.
+    fn insert_list(&mut self, name: &str, part: &impl Serialize, count: usize) {
+        if count > 0 {
+            self.insert(name, &digest_of(part));
+        }
+    }
+
     /// What is looked through, where the scene leaves it open, and its `course` while the shutter is open.
     pub fn set_camera(&mut self, camera: &AnyCamera, course: &[AnyCamera]) {
-        let hash = |json: Value| digest(json.to_string().as_bytes());
-        self.0.insert("camera".into(), hash(serde_json::to_value(camera).unwrap_or_default()));
+        self.0.insert("camera".into(), digest_of(camera));
         self.0.remove("camera.course");
         if !course.is_empty() {
-            self.0.insert("camera.course".into(), hash(serde_json::to_value(course).unwrap_or_default()));
+            self.0.insert("camera.course".into(), digest_of(&course));
         }
     }
 
@@ -111,17 +129,32 @@ fn camera_of(scene: &Description) -> Option<&AnyCamera> {
     chosen.or(scene.camera.as_ref()).or_else(|| scene.cameras.values().next())
 }
 
-fn is_nothing(value: &Value) -> bool {
-    match value {
-        Value::Null => true,
-        Value::Array(items) => items.is_empty(),
-        Value::Object(items) => items.is_empty(),
-        _ => false,
+/// Hash of a value's JSON, in which 32-bit numbers have the digits of 64-bit ones. The text is never held as a whole.
+fn digest_of(value: &impl Serialize) -> String {
+    let mut writer = BufWriter::new(blake3::Hasher::new());
+    // Descriptions are plain data: they can be written.
+    let written = value.serialize(&mut serde_json::Serializer::with_formatter(&mut writer, WideNumbers));
+    let hasher = writer.into_inner().unwrap_or_default();
+    debug_assert!(written.is_ok());
+    hex(hasher.finalize())
+}
+
+/// Writes each 32-bit number as the 64-bit number of the same value.
+struct WideNumbers;
+
+impl Formatter for WideNumbers {
+    fn write_f32<W: ?Sized + Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
+        self.write_f64(writer, f64::from(value))
     }
 }
 
 fn digest(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex()[..32].to_owned()
+    hex(blake3::hash(bytes))
+}
+
+/// The first half of a hash.
+fn hex(hash: blake3::Hash) -> String {
+    hash.to_hex()[..32].to_owned()
 }
 
 /// The mesh, picture and photometric files that a scene names, with the hashes of their contents.
@@ -157,5 +190,29 @@ fn collect(objects: &[Object], path: &Path, files: &Files<'_>, found: &mut BTree
         if let Some(objects) = &object.objects {
             collect(objects, &path.index(i).key("objects"), files, found);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Scene, built_in_scenes};
+
+    /// Checkpoints and partial renders on disk carry these hashes.
+    #[test]
+    fn hashes_are_those_of_the_json_as_a_tree() {
+        let mut parts = 0;
+        for scene in built_in_scenes() {
+            let scene = Scene::built_in(scene.name).unwrap();
+            let tree = serde_json::to_value(&scene.description).unwrap();
+            let fingerprint = scene.fingerprint();
+            for name in ["background", "textures", "materials", "groups", "lights", "objects"] {
+                let expected = tree.get(name).filter(|part| !part.as_array().is_some_and(Vec::is_empty));
+                let expected = expected.map(|part| digest(part.to_string().as_bytes()));
+                assert_eq!(fingerprint.parts().get(name), expected.as_ref(), "{}: {name}", scene.description.title);
+                parts += usize::from(expected.is_some());
+            }
+        }
+        assert!(parts > 100, "{parts}");
     }
 }

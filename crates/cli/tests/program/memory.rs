@@ -238,3 +238,18 @@ fn instanced_emitters_are_foretold() {
     assert!(refused.stderr.contains("10000000 shapes that emit light, the limit is 4000000"), "{}", refused.stderr);
     assert!(refused.stderr.contains("objects[4]"), "{}", refused.stderr);
 }
+
+/// Twice or half as many bytes an object would be noticed: they are most of what is held.
+#[test]
+fn stored_objects_are_foretold() {
+    let folder = Folder::new();
+    let row = |z: u32| {
+        let end = |x: u32| format!(r#"{{"center": [{x}, 0, {z}], "radius": 0.4}}"#);
+        format!(r#"{{"chain": {{"from": {}, "to": {}, "count": 1000}}}}"#, end(0), end(999))
+    };
+    let rows: Vec<String> = (0..200).map(row).collect();
+    fs::write(folder.path("rows.json"), format!(r#"{{"version": 1, "objects": [{}]}}"#, rows.join(", "))).unwrap();
+    let stats = folder.stats("rows.json --size 8x8 --samples 1 -o a.png --threads 2");
+    let (peak, expected) = peaks(&stats);
+    assert!(peak <= expected && expected < 2 * peak, "{peak} of {expected}");
+}

@@ -166,10 +166,10 @@ impl Area {
             AreaShape::Rectangle { size: [width, height] } => {
                 let (_, place) = self.placed()?;
                 let (along, up) = (place.vector(Vec3::X * width), place.vector(Vec3::NEG_Z * height));
-                AreaEmitter::Rectangle(RectangleEmitter::new(self.position - (along + up) * 0.5, [along, up])?)
+                RectangleEmitter::new(self.position - (along + up) * 0.5, [along, up])?.into()
             }
-            AreaShape::Disk { radius } => AreaEmitter::Disk(DiskEmitter::new(self.position, normal, radius)?),
-            AreaShape::Sphere { radius } => AreaEmitter::Sphere(SphereEmitter::new(self.position, radius)?),
+            AreaShape::Disk { radius } => DiskEmitter::new(self.position, normal, radius)?.into(),
+            AreaShape::Sphere { radius } => SphereEmitter::new(self.position, radius)?.into(),
         })
     }
 }

@@ -25,16 +25,14 @@ impl Areas {
         match shape {
             AnyShape::Sphere(sphere) => {
                 let radius = sphere.radius * transform.uniform_scale()?;
-                one(AreaEmitter::Sphere(SphereEmitter::new(transform.origin(), radius)?))
+                one(SphereEmitter::new(transform.origin(), radius)?.into())
             }
             AnyShape::Disk(Disk { radius, inner_radius: 0.0 }) => {
                 let radius = radius * transform.uniform_scale()?;
-                one(AreaEmitter::Disk(DiskEmitter::new(transform.origin(), transform.normal(Vec3::Y), radius)?))
+                one(DiskEmitter::new(transform.origin(), transform.normal(Vec3::Y), radius)?.into())
             }
-            AnyShape::Rectangle(rectangle) => one(AreaEmitter::Rectangle(placed(rectangle, transform)?)),
-            AnyShape::Triangle(triangle) => {
-                one(AreaEmitter::Triangle(TriangleEmitter::new(turned(triangle.vertices, transform))?))
-            }
+            AnyShape::Rectangle(rectangle) => one(placed(rectangle, transform)?.into()),
+            AnyShape::Triangle(triangle) => one(TriangleEmitter::new(turned(triangle.vertices, transform))?.into()),
             AnyShape::Mesh(mesh) => Self::of_mesh(mesh.data()?, transform),
             _ => None,
         }
@@ -54,10 +52,10 @@ impl Areas {
         while let Some(triangle) = corners(parts.len()) {
             let number = surfaces.len() as u32;
             if let Some(rectangle) = corners(parts.len() + 1).and_then(|next| rectangle(triangle, next)) {
-                surfaces.push(AreaEmitter::Rectangle(rectangle));
+                surfaces.push(rectangle.into());
                 parts.extend([number, number]);
             } else if let Some(triangle) = TriangleEmitter::new(triangle) {
-                surfaces.push(AreaEmitter::Triangle(triangle));
+                surfaces.push(triangle.into());
                 parts.push(number);
             } else {
                 parts.push(NOWHERE);

@@ -38,7 +38,7 @@ enum Emitter {
     /// A light of the scene, by number.
     Lamp(u32),
     /// A surface of the shape at that place.
-    Area(Box<AreaEmitter>, u32),
+    Area(AreaEmitter, u32),
     /// The shape at that place as a whole.
     Shape(u32),
 }
@@ -102,7 +102,7 @@ impl Receiver {
 
 impl Emitters {
     /// Lamps, shapes, and the background; `radius` is that of a ball around everything that has an end.
-    pub fn new(lamps: &[Lamp], mut glowing: Vec<Glowing>, background: &AnyBackground, radius: f32) -> Self {
+    pub fn new(lamps: &[Lamp], glowing: Vec<Glowing>, background: &AnyBackground, radius: f32) -> Self {
         let mut emitters = Self::default();
         let (mut bounds, mut far): (Vec<LightBounds>, Vec<(Far, f32)>) = (Vec::new(), Vec::new());
         // Those with a surface stand among the shapes.
@@ -119,14 +119,7 @@ impl Emitters {
             far.push((Far::Background, background.power(1.0)));
         }
         emitters.far = FarLights::new(far);
-        // Mostly in order already; numbers are unique.
-        glowing.sort_unstable_by_key(|shape| shape.number);
-        emitters.shapes.reserve_exact(glowing.len());
-        emitters.finite.reserve(glowing.len());
-        bounds.reserve(glowing.len());
-        for shape in glowing {
-            emitters.add(shape, &mut bounds);
-        }
+        emitters.add(glowing, &mut bounds);
         emitters.tree = LightTree::build(&bounds);
         emitters
     }
@@ -137,29 +130,38 @@ impl Emitters {
         self
     }
 
-    fn add(&mut self, shape: Glowing, bounds: &mut Vec<LightBounds>) {
-        let (first, place) = (self.finite.len() as u32, self.shapes.len() as u32);
-        let areas = shape.still().and_then(|transform| Areas::of(shape.shape(), transform));
-        let parts = if let Some(Areas { surfaces, parts }) = areas {
-            for surface in surfaces {
+    /// Adds the emitters of shapes. The list of shapes is taken over before the lists of emitters grow, so that
+    /// millions of emitting shapes are never held twice beside them.
+    fn add(&mut self, glowing: Vec<Glowing>, bounds: &mut Vec<LightBounds>) {
+        let shining = |shape| Shining { shape, first: 0, parts: Box::default() };
+        self.shapes = glowing.into_iter().map(shining).collect();
+        // Mostly in order already; numbers are unique.
+        self.shapes.sort_unstable_by_key(|shining| shining.shape.number);
+        self.finite.reserve(self.shapes.len());
+        bounds.reserve(self.shapes.len());
+        for (place, Shining { shape, first, parts }) in (0..).zip(&mut self.shapes) {
+            *first = self.finite.len() as u32;
+            let Some(areas) = shape.still().and_then(|transform| Areas::of(shape.shape(), transform)) else {
+                bounds.push(shape.bounds());
+                self.finite.push(Emitter::Shape(place));
+                continue;
+            };
+            for surface in areas.surfaces {
                 bounds.push(surface.light_bounds(shape.luminance(), shape.is_two_sided()));
-                self.finite.push(Emitter::Area(Box::new(surface), place));
+                self.finite.push(Emitter::Area(surface, place));
             }
-            parts
-        } else {
-            bounds.push(shape.bounds());
-            self.finite.push(Emitter::Shape(place));
-            Vec::new()
-        };
-        self.shapes.push(Shining { shape, first, parts: parts.into_boxed_slice() });
+            *parts = areas.parts.into_boxed_slice();
+        }
     }
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let areas = self.finite.iter().filter(|emitter| matches!(emitter, Emitter::Area(..))).count();
+        let surface =
+            |emitter: &Emitter| if let Emitter::Area(surface, _) = emitter { surface.heap_bytes() } else { 0 };
+        let surfaces: usize = self.finite.iter().map(surface).sum();
         let parts: usize = self.shapes.iter().map(|shape| size_of_val(&*shape.parts)).sum();
         let listed = size_of_val(self.finite.as_slice()) + size_of_val(self.shapes.as_slice());
-        listed + parts + areas * size_of::<AreaEmitter>() + self.tree.heap_bytes()
+        listed + parts + surfaces + self.tree.heap_bytes()
     }
 
     /// Numbers of the shapes that shine, rising.

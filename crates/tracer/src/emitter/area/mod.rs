@@ -35,17 +35,17 @@ pub struct AreaSample {
     pub pdf: f32,
 }
 
-/// A surface that shines.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A surface that shines. Large kinds stand in boxes: scenes have millions of emitting spheres.
+#[derive(Clone, Debug, PartialEq)]
 pub enum AreaEmitter {
     /// A sphere.
     Sphere(SphereEmitter),
     /// A flat, full disk.
-    Disk(DiskEmitter),
+    Disk(Box<DiskEmitter>),
     /// A rectangle.
-    Rectangle(RectangleEmitter),
+    Rectangle(Box<RectangleEmitter>),
     /// A triangle.
-    Triangle(TriangleEmitter),
+    Triangle(Box<TriangleEmitter>),
 }
 
 impl AreaEmitter {
@@ -80,6 +80,16 @@ impl AreaEmitter {
         }
     }
 
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        match self {
+            Self::Sphere(_) => 0,
+            Self::Disk(disk) => size_of_val(&**disk),
+            Self::Rectangle(rectangle) => size_of_val(&**rectangle),
+            Self::Triangle(triangle) => size_of_val(&**triangle),
+        }
+    }
+
     /// Its bounds in a light tree, when every place has this radiance (its luminance).
     pub fn light_bounds(&self, radiance: f32, two_sided: bool) -> LightBounds {
         let seen = if matches!(self, Self::Sphere(_)) { 0.25 * self.area() } else { self.area() };
@@ -91,6 +101,30 @@ impl AreaEmitter {
             Self::Triangle(triangle) => (triangle.bounds(), triangle.normal(), 1.0),
         };
         LightBounds { bounds, axis, cos_theta_o, cos_theta_e: 0.0, power, two_sided }
+    }
+}
+
+impl From<SphereEmitter> for AreaEmitter {
+    fn from(sphere: SphereEmitter) -> Self {
+        Self::Sphere(sphere)
+    }
+}
+
+impl From<DiskEmitter> for AreaEmitter {
+    fn from(disk: DiskEmitter) -> Self {
+        Self::Disk(Box::new(disk))
+    }
+}
+
+impl From<RectangleEmitter> for AreaEmitter {
+    fn from(rectangle: RectangleEmitter) -> Self {
+        Self::Rectangle(Box::new(rectangle))
+    }
+}
+
+impl From<TriangleEmitter> for AreaEmitter {
+    fn from(triangle: TriangleEmitter) -> Self {
+        Self::Triangle(Box::new(triangle))
     }
 }
 

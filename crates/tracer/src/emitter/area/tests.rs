@@ -10,19 +10,19 @@ const SIGNIFICANCE: f64 = 1.7e-5;
 const SAMPLES: u32 = 1_000_000;
 
 fn rectangle(corner: Vec3, a: Vec3, b: Vec3) -> AreaEmitter {
-    AreaEmitter::Rectangle(RectangleEmitter::new(corner, [a, b]).unwrap())
+    RectangleEmitter::new(corner, [a, b]).unwrap().into()
 }
 
 fn triangle(corners: [Vec3; 3]) -> AreaEmitter {
-    AreaEmitter::Triangle(TriangleEmitter::new(corners).unwrap())
+    TriangleEmitter::new(corners).unwrap().into()
 }
 
 fn sphere(center: Vec3, radius: f32) -> AreaEmitter {
-    AreaEmitter::Sphere(SphereEmitter::new(center, radius).unwrap())
+    SphereEmitter::new(center, radius).unwrap().into()
 }
 
 fn disk(center: Vec3, normal: Vec3, radius: f32) -> AreaEmitter {
-    AreaEmitter::Disk(DiskEmitter::new(center, normal, radius).unwrap())
+    DiskEmitter::new(center, normal, radius).unwrap().into()
 }
 
 /// Surfaces around y = 1 that face down, all about as large.
