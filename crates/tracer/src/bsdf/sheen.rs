@@ -41,7 +41,8 @@ impl Sheen {
 
     /// Smith's Λ.
     fn lambda(&self, cos: f32) -> f32 {
-        let power = if cos < 0.5 { self.curve(cos) } else { 2.0 * self.curve(0.5) - self.curve(1.0 - cos) };
+        // Rounding makes cosines a little larger than 1, where the curve is no number.
+        let power = if cos < 0.5 { self.curve(cos) } else { 2.0 * self.curve(0.5) - self.curve((1.0 - cos).max(0.0)) };
         fun::exp(power)
     }
 
@@ -69,5 +70,23 @@ impl Sheen {
     /// What comes out again.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen(wo.z, self.alpha) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounded unit vectors are up to a few units in the last place longer than 1.
+    #[test]
+    fn directions_straight_up_are_as_dark_as_those_beside_them() {
+        for roughness in [0.2f32, 0.5, 0.9, 1.0] {
+            let sheen = Sheen::new(Rgb::WHITE, roughness * roughness);
+            let value = |z: f32| sheen.eval_pdf(Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.0, 0.0, z)).0.g;
+            let usual = value(0.999_999);
+            for z in [1.0, 1.0f32.next_up(), 1.000_000_2, 1.000_000_5] {
+                assert!((value(z) / usual - 1.0).abs() < 0.01, "{roughness} {z}: {} {usual}", value(z));
+            }
+        }
     }
 }

@@ -3,12 +3,14 @@
 //! = 2F / (1 + F) is mirrored in all and 1 - R goes straight on (PBR 4th ed., section 9.5.1).
 //!
 //! A rough one spreads both alike, as the extension KHR_materials_transmission of glTF has it: what goes through is
-//! what is mirrored, turned over at the surface.
+//! what is mirrored, turned over at the surface. Light that is scattered more than once is given back, and samples of a
+//! clear pane carry a weight of 1, as those of a [`Conductor`](super::Conductor) do.
 
-use super::ggx::Ggx;
+use super::energy::Scramble;
+use super::ggx::{Facing, Ggx};
 use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
-use super::{BsdfSample, Film, Scatter, choose, energy, fresnel};
-use juggler_math::{Rgb, Vec2, Vec3, warp};
+use super::{BsdfSample, Film, Scatter, energy, fresnel};
+use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
 /// A thin sheet, the same from either side.
@@ -99,15 +101,11 @@ impl ThinDielectric {
             if is_mirrored { (self.reflection, self.average()) } else { (self.transmission, 1.0 - self.average()) };
         let (share, probability) =
             if is_mirrored { (share, probability) } else { (Rgb::WHITE - share, 1.0 - probability) };
-        let (mut value, mut pdf) = (share * facing.value, probability * facing.pdf);
-        if self.compensated {
-            let lost = self.lost(o);
-            let out = self.lost(i) / energy::mirror_lost_average(self.ggx);
-            let cosine = i.z * FRAC_1_PI * average * lost;
-            value += Rgb::splat(cosine * out);
-            pdf = pdf * (1.0 - lost) + cosine;
+        if !self.compensated {
+            return (color * share * facing.value, probability * facing.pdf);
         }
-        (color * value, pdf)
+        let more = average * FRAC_1_PI * self.lost(o) * self.lost(i) * i.z / energy::mirror_lost_average(self.ggx);
+        (color * (share * facing.value + Rgb::splat(more)), probability * facing.value + more)
     }
 
     /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether light is mirrored by it or goes through, as often
@@ -128,15 +126,18 @@ impl ThinDielectric {
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
     }
 
+    /// A direction above and how it is scattered, turned over by `choice` if light goes through.
     fn pick(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
-        let lost = if self.compensated { self.lost(wo) } else { 0.0 };
-        let (is_multiple, x) = choose(u.x, lost);
-        let u = Vec2::new(x, u.y);
-        let (wi, probability, scatter) = if is_multiple {
-            (warp::cosine_hemisphere(u), self.average(), Scatter::Diffuse)
-        } else {
-            let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
-            (wi, self.chance(self.share(facing.cos)), Scatter::Glossy)
+        let mut random = Scramble::new(u, 0.0);
+        // Take the direction that a visible normal reflects, if compensated with probability G2 / G1.
+        let mut is_taken = |facing: &Facing| !self.compensated || random.unit() * facing.pdf < facing.value;
+        let once = self.ggx.sample_mirror(wo, u).filter(|(_, facing)| is_taken(facing));
+        let (wi, probability, scatter) = match once {
+            Some((wi, facing)) => (wi, self.chance(self.share(facing.cos)), Scatter::Glossy),
+            None if self.compensated => {
+                (energy::sample_mirror_lost(self.ggx, &mut random), self.average(), Scatter::Diffuse)
+            }
+            None => return None,
         };
         Some((if choice < probability { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
     }

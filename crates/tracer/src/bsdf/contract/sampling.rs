@@ -99,6 +99,21 @@ fn samples_of_white_metal_weigh_one() {
     }
 }
 
+/// A clear pane keeps the energy of each path from either side, whatever the tables of its loss miss.
+#[test]
+fn samples_of_a_clear_pane_weigh_one() {
+    let mut random = Random::new(106);
+    for alpha in [(0.05, 0.05), (0.3, 0.3), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)].map(Vec2::from) {
+        for ior in [1.0, 1.5, 2.4] {
+            let pane = Bsdf::from(ThinDielectric::compensated(ior, alpha));
+            for wo in views(true).into_iter().flat_map(|wo| [wo; 200]) {
+                let sample = pane.sample(wo, random.vec2(), random.f32()).unwrap();
+                assert!(close(sample.weight.g, 1.0, 1e-5), "{ior} {alpha} {wo}: {sample:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn samples_carry_value_over_density() {
     let mut random = Random::new(81);
