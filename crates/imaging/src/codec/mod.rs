@@ -162,12 +162,14 @@ impl RowWriter for Counted {
     }
 }
 
-/// A piece of a file's text as it may stand in a message: short, without characters that a terminal would obey.
+/// A piece of a file's text as it may stand in a message: short, and only if all of it can be read.
 fn shown(text: &str) -> String {
     const LONGEST: usize = 40;
-    let printable = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    if text.chars().any(|c| c.is_control() || c == char::REPLACEMENT_CHARACTER) {
+        return "bytes that are no text".to_owned();
+    }
     let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
-    format!("`{}{dots}`", text.chars().take(LONGEST).map(printable).collect::<String>())
+    format!("`{}{dots}`", text.chars().take(LONGEST).collect::<String>())
 }
 
 /// What a reader reads from.
