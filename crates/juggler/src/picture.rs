@@ -85,7 +85,7 @@ impl Picture {
         let region = settings.region([width, height])?;
         let camera = compiled.cameras.first().ok_or_else(|| Error::Settings("the scene has no camera".into()))?;
         let shot = compiled.shot(UVec2::new(width, height)).map_err(|e| Error::Settings(e.to_string()))?;
-        let (tone, limit, mut of_scene) = (scene.description.tone.clone(), settings.limit, scene.fingerprint());
+        let (tone, limit, mut of_scene) = ((*scene.description.tone).clone(), settings.limit, scene.fingerprint());
         of_scene.set_camera(&camera.1, &compiled.course);
         let fingerprint = of_scene.clone();
         let layers = Arc::new(LayerSet::new(&settings.aovs, settings.denoiser, &compiled.names));
@@ -114,9 +114,9 @@ impl Picture {
         let integrator = view.render.integrator.get_or_insert_with(|| self.integrator().clone()).clone();
         let mut scene = Scene::new();
         let description = &mut scene.description;
-        (description.render, description.tone) = (view.render.clone(), view.tone.clone());
+        (description.render, description.tone) = (view.render.clone().into(), view.tone.clone().into());
         description.render.camera = None;
-        description.camera = Some(view.camera.clone());
+        description.camera = Some(view.camera.clone().into());
         let problems = scene.check();
         if problems.errors() > 0 {
             return Err(SceneError::Problems(problems).into());

@@ -213,7 +213,7 @@ mod tests {
     fn depths_are_those_of_the_integrator() {
         let apply = |integrator: &str, depth| {
             let wish = Settings { integrator: Some(integrator.into()), max_depth: Some(depth), ..Settings::default() };
-            wish.apply(&scene()).map(|scene| scene.description.render.integrator)
+            wish.apply(&scene()).map(|scene| scene.description.render.integrator.clone())
         };
         assert_eq!(apply("path", 4).unwrap(), Some(Path { max_depth: 4, ..Path::default() }.into()));
         assert!(apply("classic", 0).is_ok() && apply("path", 10_000).is_ok());
@@ -229,7 +229,7 @@ mod tests {
         scene.description.tone.white_balance = Some(WhiteBalance::default());
         let wish = Settings { primaries: Some(Primaries::Rec2020), dither: Some(false), ..Settings::default() };
         let tone = wish.apply(&scene).unwrap().description.tone;
-        let expected = Tone { primaries: Primaries::Rec2020, dither: false, ..scene.description.tone };
+        let expected = Tone { primaries: Primaries::Rec2020, dither: false, ..(*scene.description.tone).clone() };
         assert_eq!(tone, expected);
     }
 

@@ -7,10 +7,10 @@
 use crate::description::{Backdrop, Description, Object, Render};
 use juggler_math::{Aabb, DVec3, Rgb, Vec3, fun};
 use juggler_tracer::background::Gradient;
-use juggler_tracer::camera::Perspective;
+use juggler_tracer::camera::{AnyCamera, Perspective};
 use juggler_tracer::integrator::Path as PathIntegrator;
-use juggler_tracer::light::Directional;
-use juggler_tracer::material::{Diffuse, Plastic};
+use juggler_tracer::light::{AnyLight, Directional};
+use juggler_tracer::material::{AnyMaterial, Diffuse, Plastic};
 use juggler_tracer::shape::{Mesh, Plane};
 use std::path::Path;
 
@@ -47,19 +47,20 @@ pub fn describe(file: &str, bounds: &Aabb, z_up: bool) -> Description {
     let mut scene = Description {
         description: format!("A scene made around the mesh {file}"),
         title,
-        render,
-        background: Some(Backdrop::Kind(sky().into())),
-        lights: vec![sun().into()],
+        render: render.into(),
+        background: Some(Backdrop::Kind(sky().into()).into()),
+        lights: [AnyLight::from(sun()).into()].into_iter().collect(),
         ..Description::default()
     };
     let clay = Plastic { reflectance: Rgb::new(0.5, 0.34, 0.24).into(), roughness: 0.5.into(), ..Plastic::default() };
-    scene.materials.insert("model".into(), clay.into());
-    scene.objects.push(model.material_named("model"));
+    scene.materials.insert("model".into(), AnyMaterial::from(clay).into());
+    scene.objects.push(model.material_named("model").into());
     if let Some(placed) = Placed::of(bounds, z_up) {
         let floor = Diffuse { reflectance: Rgb::splat(0.42).into(), ..Diffuse::default() };
-        scene.materials.insert("floor".into(), floor.into());
-        scene.objects.push(Object::new(Plane {}).named("floor").at(0.0, placed.floor(), 0.0).material_named("floor"));
-        scene.camera = Some(placed.camera(scene.render.size).into());
+        scene.materials.insert("floor".into(), AnyMaterial::from(floor).into());
+        let plane = Object::new(Plane {}).named("floor").at(0.0, placed.floor(), 0.0);
+        scene.objects.push(plane.material_named("floor").into());
+        scene.camera = Some(AnyCamera::from(placed.camera(scene.render.size)).into());
     }
     scene
 }

@@ -78,7 +78,7 @@ mod tests {
     fn kept(text: &str) -> (String, Scene) {
         let text = with_camera(text, "mine", &camera()).unwrap();
         let scene = Scene::from_json(text.clone(), "test.json").unwrap();
-        assert_eq!(scene.description.cameras.get("mine"), Some(&camera()), "{text}");
+        assert_eq!(scene.description.cameras["mine"], camera(), "{text}");
         (text, scene)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::Scene;
 use crate::description::{Backdrop, Object};
+use crate::item::Item;
 use juggler_imaging::Tone;
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::AnyCamera;
@@ -18,42 +19,42 @@ impl Scene {
     #[must_use]
     #[expect(clippy::should_implement_trait, reason = "a scene is built by adding to it")]
     pub fn add(mut self, object: Object) -> Self {
-        self.description.objects.push(object);
+        self.description.objects.push(object.into());
         self
     }
 
     /// Adds a light.
     #[must_use]
     pub fn light(mut self, light: impl Into<AnyLight>) -> Self {
-        self.description.lights.push(light.into());
+        self.description.lights.push(light.into().into());
         self
     }
 
     /// Adds a material under a name.
     #[must_use]
     pub fn material(mut self, name: impl Into<String>, material: impl Into<AnyMaterial>) -> Self {
-        self.description.materials.insert(name.into(), material.into());
+        self.description.materials.insert(name.into(), material.into().into());
         self
     }
 
     /// Adds a texture under a name.
     #[must_use]
     pub fn texture(mut self, name: impl Into<String>, texture: impl Into<AnyTexture>) -> Self {
-        self.description.textures.insert(name.into(), texture.into());
+        self.description.textures.insert(name.into(), texture.into().into());
         self
     }
 
     /// Adds a group of objects under a name, to be placed by [`Object::group`].
     #[must_use]
     pub fn group(mut self, name: impl Into<String>, objects: impl IntoIterator<Item = Object>) -> Self {
-        self.description.groups.insert(name.into(), objects.into_iter().collect());
+        self.description.groups.insert(name.into(), objects.into_iter().map(Item::from).collect());
         self
     }
 
     /// Adds a camera under a name; the first is used unless another is chosen.
     #[must_use]
     pub fn camera(mut self, name: impl Into<String>, camera: impl Into<AnyCamera>) -> Self {
-        self.description.cameras.insert(name.into(), camera.into());
+        self.description.cameras.insert(name.into(), camera.into().into());
         self
     }
 
@@ -61,7 +62,7 @@ impl Scene {
     /// [`Sky`](juggler_tracer::background::Sky).
     #[must_use]
     pub fn background(mut self, background: impl Into<AnyBackground>) -> Self {
-        self.description.background = Some(Backdrop::from(background.into()));
+        self.description.background = Some(Backdrop::from(background.into()).into());
         self
     }
 
@@ -96,7 +97,7 @@ impl Scene {
     /// Sets the curve, the exposure and all else that turns linear light into the levels of a file.
     #[must_use]
     pub fn tone(mut self, tone: Tone) -> Self {
-        self.description.tone = tone;
+        *self.description.tone = tone;
         self
     }
 

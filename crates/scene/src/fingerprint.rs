@@ -8,6 +8,8 @@
 use crate::compile::{Files, light_files, pictures};
 use crate::description::{Description, Object, Render};
 use crate::integrator::IntegratorChoice;
+use crate::item::Item;
+use crate::motion::Tracks;
 use crate::path::Path;
 use juggler_imaging::Tone;
 use juggler_tracer::camera::AnyCamera;
@@ -27,14 +29,14 @@ const MEANING: &[u8] = b"juggler scene 2\n";
 pub struct Fingerprint(BTreeMap<String, String>);
 
 impl Fingerprint {
-    /// Of a description, what it is at `moments` while the shutter is open, and the files it names.
-    pub(crate) fn of(scene: &Description, moments: &[Description], files: &Files<'_>) -> Self {
+    /// Of a description, what moves while the shutter is open, and the files it names.
+    pub(crate) fn of(scene: &Description, tracks: &Tracks, files: &Files<'_>) -> Self {
         // Titles, the animation's length, the tone curve and cameras that are not used decide no pixel.
         let settings = Render {
             samples: 0,
             integrator: Some(IntegratorChoice::of(scene).integrator),
             camera: None,
-            ..scene.render.clone()
+            ..(*scene.render).clone()
         };
         let mut parts = Self::default();
         for (key, value) in serde_json::to_value(&settings).unwrap_or_default().as_object().into_iter().flatten() {
@@ -43,13 +45,11 @@ impl Fingerprint {
                 None => parts.insert(&format!("render.{key}"), &value.to_string()),
             }
         }
-        let Description { version, include, variables, background, background_light_group, .. } = scene;
+        let Description { version, background, background_light_group, .. } = scene;
         let Description { textures, materials, groups, lights, objects, .. } = scene;
         parts.insert("version", &digest_of(version));
         // The tone curve decides no pixel, but files on disk carry the hash of the default one.
         parts.insert("tone", &digest_of(&Tone::default()));
-        parts.insert_list("include", include, include.len());
-        parts.insert_list("variables", variables, variables.len());
         parts.insert_list("camera", &camera_of(scene), usize::from(camera_of(scene).is_some()));
         parts.insert_list("background", background, usize::from(background.is_some()));
         parts.insert_list(
@@ -62,9 +62,8 @@ impl Fingerprint {
         parts.insert_list("groups", groups, groups.len());
         parts.insert_list("lights", lights, lights.len());
         parts.insert_list("objects", objects, objects.len());
-        if !moments.is_empty() {
-            let all: Vec<_> = moments.iter().map(|at| (&at.groups, &at.lights, &at.objects)).collect();
-            parts.insert("motion", &digest(&serde_json::to_vec(&all).unwrap_or_default()));
+        if !(tracks.objects.is_empty() && tracks.groups.is_empty() && tracks.lights.is_empty()) {
+            parts.insert("motion", &digest_of(&(&tracks.objects, &tracks.groups, &tracks.lights)));
         }
         for (file, hash) in digests(scene, files) {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -126,7 +125,7 @@ impl Fingerprint {
 /// The camera that is looked through, unless it is one that follows from what can be seen.
 fn camera_of(scene: &Description) -> Option<&AnyCamera> {
     let chosen = scene.render.camera.as_ref().and_then(|name| scene.cameras.get(&name.0));
-    chosen.or(scene.camera.as_ref()).or_else(|| scene.cameras.values().next())
+    chosen.or(scene.camera.as_ref()).or_else(|| scene.cameras.values().next()).map(|camera| &**camera)
 }
 
 /// Hash of a value's JSON, in which 32-bit numbers have the digits of 64-bit ones. The text is never held as a whole.
@@ -177,7 +176,7 @@ pub(crate) fn mesh_files(scene: &Description, files: &Files<'_>) -> BTreeSet<Pat
     found
 }
 
-fn collect(objects: &[Object], path: &Path, files: &Files<'_>, found: &mut BTreeSet<PathBuf>) {
+fn collect(objects: &[Item<Object>], path: &Path, files: &Files<'_>, found: &mut BTreeSet<PathBuf>) {
     for (i, object) in objects.iter().enumerate() {
         if let Some(AnyShape::Mesh(mesh)) = &object.shape {
             let path = path.index(i).key("shape").key("mesh");
@@ -187,8 +186,8 @@ fn collect(objects: &[Object], path: &Path, files: &Files<'_>, found: &mut BTree
                 found.extend(morph.file.iter().map(|file| files.locate(&path, file)));
             }
         }
-        if let Some(objects) = &object.objects {
-            collect(objects, &path.index(i).key("objects"), files, found);
+        if object.objects.is_some() {
+            collect(object.inner(), &path.index(i).key("objects"), files, found);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Which integrator renders a scene: the one that the scene names, or the one that fits what the scene holds.
 
 use crate::description::{Backdrop, Description, Object};
+use crate::item::Item;
 use crate::path::{Path, Trail};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::integrator::{self, AnyIntegrator, Classic};
@@ -103,10 +104,12 @@ impl Holdings {
     pub fn of(scene: &Description) -> Self {
         let mut found = Self::default();
         let background = scene.background.as_ref();
-        if let Some(Backdrop::Kind(kind @ (AnyBackground::Environment(_) | AnyBackground::Sky(_)))) = background {
+        if let Some(Backdrop::Kind(kind @ (AnyBackground::Environment(_) | AnyBackground::Sky(_)))) =
+            background.map(|item| &**item)
+        {
             found.sky = Some(Part { path: Path::root().key("background"), kind: kind.name(), is_light: true });
         }
-        if let Some(i) = scene.lights.iter().position(|light| matches!(light, AnyLight::Area(_))) {
+        if let Some(i) = scene.lights.iter().position(|light| matches!(**light, AnyLight::Area(_))) {
             found.area = Some(Part { path: Path::root().key("lights").index(i), kind: "area", is_light: true });
         }
         let materials = Trail::Root.key("materials");
@@ -123,7 +126,7 @@ impl Holdings {
     }
 
     /// `inherits` says whether objects without a material may take one from where they are placed.
-    fn objects(&mut self, objects: &[Object], path: &Trail<'_>, inherits: bool) {
+    fn objects(&mut self, objects: &[Item<Object>], path: &Trail<'_>, inherits: bool) {
         for (i, object) in objects.iter().enumerate() {
             let path = path.index(i);
             match &object.material {
@@ -131,7 +134,7 @@ impl Holdings {
                 Some(MaterialRef::Name(_)) => {}
                 None => self.has_phong |= !inherits && object.objects.is_none() && object.group.is_none(),
             }
-            let inner = object.objects.as_deref().unwrap_or_default();
+            let inner = object.inner();
             self.objects(inner, &path.key("objects"), inherits || object.material.is_some());
         }
     }

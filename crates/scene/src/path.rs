@@ -52,17 +52,23 @@ impl Path {
         self.0.iter().map(step).collect()
     }
 
-    /// The path that a JSON pointer writes. Numbers are places in arrays, but for the names of materials, textures and groups.
+    /// The path that a JSON pointer writes. Numbers are places in arrays, but for names of cameras, textures, materials and
+    /// groups.
     pub fn from_pointer(pointer: &str) -> Self {
         let mut path = Self::root();
         for step in pointer.split('/').skip(1).map(|step| step.replace("~1", "/").replace("~0", "~")) {
-            let is_name = matches!(path.0.as_slice(), [Step::Key(part)] if part != "objects");
+            let is_name = matches!(path.0.as_slice(), [Step::Key(part)] if part != "objects" && part != "lights");
             path.0.push(match step.parse() {
                 Ok(index) if !is_name => Step::Index(index),
                 _ => Step::Key(step),
             });
         }
         path
+    }
+
+    /// The way that these steps go.
+    pub(crate) fn from_steps<'p>(steps: impl IntoIterator<Item = &'p Step>) -> Self {
+        Self(steps.into_iter().cloned().collect())
     }
 
     /// The steps in order.

@@ -2,23 +2,23 @@
 
 use crate::SceneError;
 use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Needs, light_files, pictures};
-use crate::description::{Animation, Description};
-use crate::document::{Document, Node, Sources, Unreadable, put};
+use crate::description::{Description, described};
+use crate::document::{Document, Node, Place, Sources, Unreadable};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::import::Content;
 use crate::integrator::IntegratorChoice;
-use crate::moments::Moments;
+use crate::motion::{self, Reader, Tracks};
 use crate::path::Path as ScenePath;
 use crate::relocate::relocate;
 use crate::report::{Finding, Problems};
 use crate::store::{Bundle, Store};
-use crate::validate::validate;
-use crate::{animate, around, schema};
-use serde::Deserialize;
-use serde_json::{Map, Value};
+use crate::validate::{GivenNames, Known};
+use crate::{animate, around};
+use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// A scene at one frame.
 ///
@@ -33,23 +33,35 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// All of it, as numbers: expressions are resolved.
+    /// All of it at the frame, as numbers: expressions are worked out. It may be changed at will: what a program changes
+    /// of an item that moves stands still from then on.
     pub description: Description,
+    /// The time that it is at.
+    pub(crate) frame: f64,
     /// Where it was read from.
     origin: Option<Arc<Origin>>,
     /// Files that were loaded, for copies of this scene and its other frames.
     library: Library,
+    /// What moves while the shutter is open, once somebody has asked.
+    tracks: Arc<Mutex<Option<KnownTracks>>>,
 }
 
-/// A scene's files, and its tree at the frame.
+/// The files of a scene, merged.
 #[derive(Debug)]
 struct Origin {
-    document: Arc<Document>,
-    frame: f64,
-    resolved: Node,
-    moments: Moments,
+    document: Document,
     /// What is allowed and probably not meant.
     warnings: Vec<Finding>,
+    names: GivenNames,
+}
+
+/// The tracks of a scene that was like this.
+#[derive(Debug)]
+struct KnownTracks {
+    scene: Description,
+    frame: f64,
+    tracks: Arc<Tracks>,
+    findings: Vec<Finding>,
 }
 
 impl Scene {
@@ -75,7 +87,7 @@ impl Scene {
             Content::Mesh { z_up } => {
                 let bounds = library.bounds(path).map_err(SceneError::Mesh)?;
                 let description = around::describe(&path.to_string_lossy(), &bounds, z_up);
-                return Ok(Self { description, origin: None, library });
+                return Ok(Self { description, library, ..Self::default() });
             }
             Content::Foreign(format) => return Err(SceneError::Foreign { path: path.into(), format }),
         }
@@ -93,67 +105,63 @@ impl Scene {
     }
 
     fn parse(text: String, name: &str, library: Library) -> Result<Self, SceneError> {
-        let (document, findings) = Document::read(name, text, library.store())
-            .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, None)))?;
-        Self::resolve(Arc::new(document), findings, 0.0, library)
+        let (document, mut findings) = Document::read(name, text, library.store())
+            .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, &|_| None)))?;
+        let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, 0.0);
+        findings.extend(wrong);
+        let found = described(&resolved, &mut findings);
+        drop(resolved);
+        let whole = found.is_some() && !findings.iter().any(Finding::is_error);
+        let (mut description, in_place) = found.unwrap_or_default();
+        motion::attach(&mut description, &document.tree, &in_place);
+        let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
+        let origin = Some(Arc::new(Origin { document, warnings, names: GivenNames::of(&description) }));
+        let scene = Self { description, origin, library, ..Self::default() };
+        if whole {
+            return Ok(scene);
+        }
+        // What could be read is checked too, so that all mistakes come at once.
+        let more = Assembly::of(&scene.description, &Tracks::default(), scene.files()).1;
+        Err(SceneError::Problems(scene.report(joined(findings, more))))
     }
 
-    /// The same scene at another frame, which may lie between two. A scene that was not read from a file has no
-    /// expressions and stays as it is; changes made since a scene was read are lost.
+    /// The same scene at another frame, which may lie between two. What moves is read anew, all else is shared.
     pub fn at_frame(&self, frame: f64) -> Result<Self, SceneError> {
-        match &self.origin {
-            Some(origin) => Self::resolve(Arc::clone(&origin.document), Vec::new(), frame, self.library.clone()),
-            None => Ok(self.clone()),
+        let settled = self.settled();
+        let wanted = settled.timed();
+        let mut scene = Self { frame, tracks: Arc::default(), ..self.clone() };
+        if wanted.is_empty() {
+            scene.description = settled.into_owned();
+            return Ok(scene);
         }
+        let head = motion::head(&settled);
+        let mut reader = Reader::new(&head, self.sources(), frame, Known::Scene(&settled));
+        wanted.iter().for_each(|wanted| reader.add(wanted));
+        let (parts, findings) = reader.finish();
+        scene.description = settled.clone().into_owned();
+        match parts {
+            Some(parts) => parts.into_iter().for_each(|(path, part)| scene.description.put(&path, part)),
+            None => return Err(SceneError::Problems(scene.report(findings))),
+        }
+        Ok(scene)
     }
 
     /// The same some frames later, or earlier; as [`Scene::at_frame`].
     pub fn later(&self, frames: f64) -> Result<Self, SceneError> {
-        let frame = self.origin.as_ref().map_or(0.0, |origin| origin.frame);
-        self.at_frame(frame + frames)
+        self.at_frame(self.frame + frames)
+    }
+
+    /// The scene as it is at its frame, and at all others too.
+    #[must_use]
+    pub fn still(&self) -> Self {
+        let mut scene = self.clone();
+        scene.description.stand_still();
+        scene
     }
 
     /// Reads the file again, and of the files that it names those that have changed.
     pub fn reload(&self, path: impl AsRef<Path>) -> Result<Self, SceneError> {
         Self::read(path.as_ref(), self.library.renewed())
-    }
-
-    /// The same scene with another value at a place, which is a JSON pointer such as `/materials/red/phong/diffuse`;
-    /// `null` takes away what is there. The value may be an expression. Objects on the way are made where there are
-    /// none. Changes made since a scene was read from a file are lost.
-    pub fn with_value(&self, pointer: &str, value: Value) -> Result<Self, SceneError> {
-        let (mut document, frame) = match &self.origin {
-            Some(origin) => ((*origin.document).clone(), origin.frame),
-            None => {
-                let tree = serde_json::to_value(&self.description).unwrap_or_default().into();
-                (Document { sources: Sources::default(), tree }, 0.0)
-            }
-        };
-        if let Err(finding) = put(&mut document.tree, pointer, value) {
-            return Err(SceneError::Problems(Problems::new(vec![finding], document.sources, None)));
-        }
-        Self::resolve(Arc::new(document), Vec::new(), frame, self.library.clone())
-    }
-
-    fn resolve(
-        document: Arc<Document>,
-        mut findings: Vec<Finding>,
-        frame: f64,
-        library: Library,
-    ) -> Result<Self, SceneError> {
-        let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, frame);
-        findings.extend(wrong);
-        let description = described(&resolved, &mut findings);
-        let whole = description.is_some() && !findings.iter().any(Finding::is_error);
-        let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
-        let origin = Arc::new(Origin { document, frame, resolved, moments: Moments::default(), warnings });
-        let scene = Self { description: description.unwrap_or_default(), origin: Some(origin), library };
-        if whole {
-            return Ok(scene);
-        }
-        // What could be read is checked too, so that all mistakes come at once.
-        let more = Assembly::of(&scene.description, &[], scene.files()).1;
-        Err(SceneError::Problems(scene.report(joined(findings, more))))
     }
 
     /// All that is wrong with the scene, warnings included, without building the world.
@@ -163,36 +171,36 @@ impl Scene {
 
     /// [`Scene::check`], and the light that brings the most to the middle of the scene.
     pub fn check_with_light(&self) -> (Problems, Option<Illuminance>) {
-        let (moments, wrong) = self.moments();
-        let (assembly, more) = Assembly::of(&self.description, &moments, self.files());
+        let (tracks, wrong) = self.tracks();
+        let (assembly, more) = Assembly::of(&self.description, &tracks, self.files());
         (self.report(joined(joined(self.own_findings(), wrong), more)), assembly.illuminance)
     }
 
     /// Builds the world.
     pub fn compile(&self) -> Result<Compiled, SceneError> {
-        let (moments, wrong) = self.moments();
-        let (assembly, more) = Assembly::of(&self.description, &moments, self.files());
+        let (tracks, wrong) = self.tracks();
+        let (assembly, more) = Assembly::of(&self.description, &tracks, self.files());
         let findings = joined(joined(self.own_findings(), wrong), more);
         let broken = findings.iter().any(Finding::is_error);
         let problems = self.report(findings);
         if broken {
             return Err(SceneError::Problems(problems));
         }
-        Ok(assembly.compile(self.description.render.clone(), problems))
+        Ok(assembly.compile((*self.description.render).clone(), problems))
     }
 
     /// Compiles the scene with the world of an earlier compilation, which must be this scene's too:
     /// [`Scene::has_world_of`].
     pub fn compile_with(&self, earlier: &Compiled) -> Result<Compiled, SceneError> {
-        let (moments, wrong) = self.moments();
-        let (cameras, course, findings) = compile::look_at(&self.description, &moments, &earlier.bounds);
+        let (tracks, wrong) = self.tracks();
+        let (cameras, course, findings) = compile::look_at(&self.description, &tracks, &earlier.bounds);
         let findings = joined(joined(self.own_findings(), wrong), findings);
         let broken = findings.iter().any(Finding::is_error);
         let warnings = self.report(findings);
         if broken {
             return Err(SceneError::Problems(warnings));
         }
-        let settings = self.description.render.clone();
+        let settings = (*self.description.render).clone();
         let integrator = self.integrator_choice();
         Ok(Compiled { cameras, course, settings, integrator, warnings, ..earlier.clone() })
     }
@@ -201,11 +209,8 @@ impl Scene {
     pub fn has_world_of(&self, other: &Self) -> bool {
         let (a, b) = (&self.description, &other.description);
         let same_motion = || {
-            let (a, b) = (self.moments().0, other.moments().0);
-            let placed = |moments: &[Description]| -> Vec<_> {
-                moments.iter().map(|at| (at.groups.clone(), at.lights.clone(), at.objects.clone())).collect()
-            };
-            Arc::ptr_eq(&a, &b) || placed(&a) == placed(&b)
+            let (a, b) = (self.tracks().0, other.tracks().0);
+            Arc::ptr_eq(&a, &b) || (&a.objects, &a.groups, &a.lights) == (&b.objects, &b.groups, &b.lights)
         };
         (&a.background, &a.textures, &a.materials) == (&b.background, &b.textures, &b.materials)
             && a.background_light_group == b.background_light_group
@@ -216,12 +221,18 @@ impl Scene {
             && same_motion()
     }
 
-    /// What it is at even times while the shutter is open, from opening to closing; nothing when it does not change.
-    fn moments(&self) -> (Arc<Vec<Description>>, Vec<Finding>) {
-        match &self.origin {
-            Some(origin) => origin.moments.of(&origin.document, origin.frame, self.description.render.shutter),
-            None => Default::default(),
+    /// What moves while the shutter is open, and what is wrong with it.
+    fn tracks(&self) -> (Arc<Tracks>, Vec<Finding>) {
+        let mut known = self.tracks.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known.as_ref().filter(|k| k.frame == self.frame && k.scene.moves_as(&self.description)) {
+            return (Arc::clone(&known.tracks), known.findings.clone());
         }
+        let settled = self.settled();
+        let (tracks, findings) = Tracks::of(&settled, self.sources(), self.frame);
+        let tracks = Arc::new(tracks);
+        let (scene, frame) = (self.description.clone(), self.frame);
+        *known = Some(KnownTracks { scene, frame, tracks: Arc::clone(&tracks), findings: findings.clone() });
+        (tracks, findings)
     }
 
     /// The files that it was read from, and those of its meshes, pictures and lights.
@@ -245,23 +256,22 @@ impl Scene {
         Needs::of(&self.description, self.files())
     }
 
-    /// What moves in the scene, as it was written. A scene that was not read from a file is still.
+    /// What moves in the scene, for people to read.
     pub fn survey(&self) -> animate::Survey {
-        let document = self.origin.as_ref().map(|origin| &origin.document);
-        document.map(|document| animate::survey(&document.tree, &document.sources)).unwrap_or_default()
+        animate::survey(&self.to_value().into(), self.sources())
     }
 
     /// Whether anything in the scene may change from frame to frame.
     pub fn depends_on_time(&self) -> bool {
-        self.origin.as_ref().is_some_and(|origin| animate::depends_on_time(&origin.document.tree))
+        !self.settled().timed().is_empty()
     }
 
     /// Everything that decides the pixels, however many samples are taken.
     pub fn fingerprint(&self) -> Fingerprint {
-        Fingerprint::of(&self.description, &self.moments().0, &self.files())
+        Fingerprint::of(&self.description, &self.tracks().0, &self.files())
     }
 
-    /// The scene as a file, expressions resolved.
+    /// The scene as a file, with everything that moves.
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(&self.to_value()).unwrap_or_default()
     }
@@ -275,32 +285,54 @@ impl Scene {
 
     /// The same as a tree.
     pub fn to_value(&self) -> Value {
-        let still = Description { animation: Animation::default(), ..self.description.clone() };
-        let mut json = serde_json::to_value(&still).unwrap_or_default();
-        schema::tidy(&mut json);
-        schema::drop_nulls(&mut json);
-        json
+        motion::written(&self.settled())
     }
 
-    /// What does not fit the schema. A scene from a file has been checked when it was read; warnings
-    /// are left of that.
+    /// What does not fit the schema. What was read from a file was checked when it was read, and only warnings are left of
+    /// that; what programs have made or changed is checked here.
     fn own_findings(&self) -> Vec<Finding> {
-        match &self.origin {
-            Some(origin) => origin.warnings.clone(),
-            None => validate(&serde_json::to_value(&self.description).unwrap_or_default().into()).all(),
-        }
+        let mut findings = self.description.head_findings();
+        let names_are_missing = self.origin.as_ref().is_some_and(|origin| !origin.names.are_in(&self.description));
+        findings.extend(self.description.item_findings(|item| names_are_missing || item.is_changed()));
+        let warnings = self.origin.iter().flat_map(|origin| &origin.warnings);
+        let holds = |warning: &&Finding| {
+            let item = warning.path().and_then(|path| self.description.item_of(path));
+            item.is_none_or(|(item, _)| !item.is_changed())
+        };
+        findings.extend(warnings.filter(holds).cloned());
+        findings
+    }
+
+    /// The description with templates that hold all that programs have changed.
+    pub(crate) fn settled(&self) -> Cow<'_, Description> {
+        motion::settled(&self.description, self.sources(), self.frame)
+    }
+
+    pub(crate) fn sources(&self) -> &Sources {
+        static NONE: LazyLock<Sources> = LazyLock::new(Sources::default);
+        self.origin.as_ref().map_or(&*NONE, |origin| &origin.document.sources)
     }
 
     fn files(&self) -> Files<'_> {
-        let origin = self.origin.as_deref().map(|origin| (&origin.document.sources, &origin.resolved));
-        Files { origin, library: &self.library }
+        Files { scene: &self.description, sources: self.sources(), library: &self.library }
     }
 
-    fn report(&self, findings: Vec<Finding>) -> Problems {
-        match &self.origin {
-            Some(origin) => Problems::new(findings, origin.document.sources.clone(), Some(&origin.resolved)),
-            None => Problems::new(findings, Sources::default(), None),
-        }
+    pub(crate) fn report(&self, findings: Vec<Finding>) -> Problems {
+        let Some(origin) = self.origin.as_ref().filter(|_| !findings.is_empty()) else {
+            return Problems::new(findings, self.sources().clone(), &|_| None);
+        };
+        let Document { tree, sources } = &origin.document;
+        let (resolved, _) = animate::resolve(tree, sources, self.frame);
+        Problems::new(findings, sources.clone(), &|path| Some(self.place_of(path, &resolved)))
+    }
+
+    /// Where the value at a path was written, or the last value on the way to it that was, and how many steps lead there.
+    fn place_of(&self, path: &ScenePath, tree: &Node) -> (Option<Place>, usize) {
+        let written = tree.place_of(path);
+        let Some((item, depth)) = self.description.item_of(path) else { return written };
+        let own = ScenePath::from_steps(path.steps().iter().take(depth));
+        let is_there = !item.is_changed() && tree.place_of(&own).0 == item.place();
+        if is_there { written } else { (item.place(), depth) }
     }
 }
 
@@ -311,49 +343,4 @@ fn joined(mut early: Vec<Finding>, later: Vec<Finding>) -> Vec<Finding> {
     let mut later: Vec<Finding> = later.into_iter().filter(fresh).collect();
     early.append(&mut later);
     early
-}
-
-/// The types of a tree, as far as it fits them, and all that is wrong with it: what does not fit the schema, and
-/// what is wrong with the rest.
-pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<Description> {
-    let mut validated = validate(tree);
-    let json = validated.json.take();
-    findings.append(&mut validated.all());
-    let json = json?;
-    match Description::deserialize(&json) {
-        Ok(description) => Some(description),
-        // The schema allows what the types refuse: only a slip of ours can bring us here.
-        Err(error) => {
-            findings.push(Finding::error(error.to_string()).at(refused_part(&json)));
-            None
-        }
-    }
-}
-
-/// The smallest section or item of a description that the types refuse by itself; the root if there is none. The same
-/// deserializer serves as for the whole: each one more would double what this crate takes to build.
-fn refused_part(json: &Value) -> ScenePath {
-    let refused = |key: &str, value: Value| {
-        let only = Map::from_iter([("version".to_owned(), 1.into()), (key.to_owned(), value)]);
-        Description::deserialize(&Value::Object(only)).is_err()
-    };
-    let root = ScenePath::root();
-    let Some((key, value)) = json.as_object().into_iter().flatten().find(|(key, value)| refused(key, (*value).clone()))
-    else {
-        return root;
-    };
-    let section = root.key(key);
-    let item = match value {
-        Value::Array(items) => {
-            let at = items.iter().position(|item| refused(key, Value::Array(vec![item.clone()])));
-            at.map(|at| section.index(at))
-        }
-        Value::Object(items) => {
-            let one = |name: &String, item: &Value| Value::Object(Map::from_iter([(name.clone(), item.clone())]));
-            let found = items.iter().find(|(name, item)| refused(key, one(name, item)));
-            found.map(|(name, _)| section.key(name))
-        }
-        _ => None,
-    };
-    item.unwrap_or(section)
 }

@@ -173,7 +173,7 @@ fn chosen_camera<'s>(settings: &Settings, scene: &'s Scene) -> Option<&'s AnyCam
     let named = settings.camera.as_ref().or(description.render.camera.as_ref().map(|name| &name.0));
     let several = &description.cameras;
     let named = named.map(|name| several.get(name).or(description.camera.as_ref().filter(|_| name == "camera")));
-    named.unwrap_or_else(|| description.camera.as_ref().or_else(|| several.values().next()))
+    named.unwrap_or_else(|| description.camera.as_ref().or_else(|| several.values().next())).map(|camera| &**camera)
 }
 
 /// Width times height.

@@ -230,7 +230,8 @@ impl Subject {
         if matches!(setting, Setting::Integrator(name) if name != "classic") {
             settings.max_depth = None;
         }
-        let (mut render, mut tone) = (self.scene.description.render.clone(), self.scene.description.tone.clone());
+        let description = &self.scene.description;
+        let (mut render, mut tone) = ((*description.render).clone(), (*description.tone).clone());
         render.integrator.get_or_insert_with(|| self.scene.integrator_choice().integrator);
         settings.apply_to(&mut render, &mut tone).map_err(|error| text_of(&error))?;
         render.camera = self.picture.view().render.camera;
@@ -314,7 +315,7 @@ impl Subject {
         juggler::check_name("camera", name, known.iter().map(String::as_str)).map_err(|error| text_of(&error))?;
         let camera = description.cameras.get(name).or(description.camera.as_ref()).cloned();
         if let Some(camera) = camera {
-            self.look(camera, true)?;
+            self.look(camera.into_inner(), true)?;
             (self.settings, self.camera) = (settings, None);
         }
         Ok(Change::View)

@@ -1,4 +1,5 @@
-//! `juggler convert`: any readable scene as scene JSON, expressions resolved; a mesh as a scene around it.
+//! `juggler convert`: any readable scene as scene JSON, with everything that moves or as it stands at one frame; a mesh as a
+//! scene around it.
 
 use crate::failure::Failure;
 use crate::output;
@@ -13,15 +14,19 @@ pub struct Convert {
     scene: String,
     /// The file to write, `-` for standard output
     output: String,
-    /// The frame at which expressions are worked out
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    frame: u32,
+    /// Write the scene as it stands at this frame, without expressions and animation
+    #[arg(long, value_name = "N")]
+    frame: Option<u32>,
 }
 
 impl Convert {
     /// Writes the scene.
     pub fn run(self) -> Result<(), Failure> {
-        let scene = source::load(&self.scene, None)?.at_frame(f64::from(self.frame))?;
+        let scene = source::load(&self.scene, None)?;
+        let scene = match self.frame {
+            Some(frame) => scene.at_frame(f64::from(frame))?.still(),
+            None => scene,
+        };
         let folder = Path::new(&self.output).parent().filter(|_| self.output != output::STANDARD_OUTPUT);
         output::write_text(&self.output, &folder.map_or_else(|| scene.to_json(), |folder| scene.to_json_in(folder)))
     }

@@ -131,7 +131,7 @@ fn of_movie(flag: &str, format: AnimationFormat) -> Option<String> {
 /// Refuses flags that cannot act on a scene that is rendered with these settings.
 pub fn check_scene(settings: &Settings, scene: &Scene) -> Result<(), Failure> {
     let wrong = |message: String| Err(Failure::Wrong(message));
-    let (mut render, mut tone) = (scene.description.render.clone(), scene.description.tone.clone());
+    let (mut render, mut tone) = ((*scene.description.render).clone(), (*scene.description.tone).clone());
     Settings { max_depth: None, ..settings.clone() }.apply_to(&mut render, &mut tone)?;
     let integrator = render.integrator.unwrap_or_else(|| scene.integrator_choice().integrator);
     let follows_paths = matches!(integrator, AnyIntegrator::Classic(_) | AnyIntegrator::Path(_));
@@ -224,7 +224,7 @@ mod tests {
     fn tones_without_effect_are_warned_of_by_name() {
         let encoding = |output: &str| Target::Picture(Encoding::new(None, None, None, output).unwrap());
         let text = r#"{"version": 1, "tone": {"curve": "linear", "exposure_stops": 0.5}}"#;
-        let tone = Scene::from_json(text.to_owned(), "a.json").unwrap().description.tone;
+        let tone = Scene::from_json(text.to_owned(), "a.json").unwrap().description.tone.into_inner();
         let warning = idle_tone(encoding("a.exr"), &tone).unwrap();
         assert!(warning.contains("`tone.curve`, `tone.exposure_stops` have no effect"), "{warning}");
         assert_eq!(idle_tone(encoding("a.png"), &tone), None);

@@ -157,7 +157,10 @@ fn wide_primaries_are_the_same_colours_in_other_numbers() {
 fn a_converted_scene_is_the_same_picture() {
     let folder = Folder::new();
     folder.good("convert ball.json copy.json");
-    assert_eq!(folder.hash("ball.json"), folder.hash("copy.json"));
+    for frame in ["", " --frame 3"] {
+        assert_eq!(folder.hash(&format!("ball.json{frame}")), folder.hash(&format!("copy.json{frame}")));
+    }
+    assert_ne!(folder.hash("copy.json"), folder.hash("copy.json --frame 3"), "the ball moves");
     folder.good("convert ball.json later.json --frame 3");
     assert_eq!(folder.hash("ball.json --frame 3"), folder.hash("later.json"));
     let run = folder.good("convert juggler -");

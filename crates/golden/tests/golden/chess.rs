@@ -1,12 +1,12 @@
 //! The chess board is the one of the engine that it comes from: 380 primitives under five lights, two cameras.
 
 use juggler::scene::description::Description;
-use juggler::scene::{Object, Scene};
+use juggler::scene::{Item, Object, Scene};
 use juggler::tracer::shape::AnyShape;
 use juggler::{Picture, Settings};
 
 /// Meshes among objects and all that they hold, however deep.
-fn meshes(objects: &[Object], scene: &Description) -> usize {
+fn meshes(objects: &[Item<Object>], scene: &Description) -> usize {
     objects.iter().map(|object| meshes_of(object, scene)).sum()
 }
 

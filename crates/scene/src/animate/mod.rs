@@ -7,7 +7,7 @@
 //!
 //! Order: variables, each of which may use those before it; paths, which variables may ask for earlier; all the rest.
 
-use crate::document::{Node, Sources, Value};
+use crate::document::{Members, Node, Sources, Value};
 use crate::expression::{self, Names};
 use crate::path::Trail;
 use crate::report::Finding;
@@ -18,6 +18,7 @@ use walk::Walk;
 mod curve;
 mod easing;
 mod paths;
+mod resolver;
 mod spline;
 mod survey;
 mod values;
@@ -26,6 +27,8 @@ mod walk;
 
 pub use easing::{Ease, Easing};
 pub use paths::{MAX_POINTS, PathName};
+pub(crate) use resolver::Resolver;
+pub(crate) use survey::{Changing, is_worked_out};
 pub use survey::{Survey, Track, depends_on_time};
 pub use values::{Along, Animate, Interpolation, Joint, Key, MAX_KEYS, Repeat, ValueForm};
 pub use walk::MAX_NESTING;
@@ -119,6 +122,11 @@ pub fn looks_like_expression(text: &str) -> bool {
 /// The reserved keys of value forms.
 pub fn forms() -> impl Iterator<Item = &'static str> + Clone {
     values::KINDS.iter().map(|kind| kind.name)
+}
+
+/// Whether an object is a value form, or was meant to be one.
+pub(crate) fn is_form(members: &Members) -> bool {
+    values::kind_in(members).is_some()
 }
 
 /// Suggests the name of a value form for the only key of an object that stands where none can.

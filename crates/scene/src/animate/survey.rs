@@ -4,7 +4,7 @@ use super::values::{self, Interpolation, Repeat};
 use super::walk::Walk;
 use super::{CHANGING, PLAIN};
 use crate::document::{Node, Value};
-use crate::expression::names_in;
+use crate::expression::{FUNCTIONS, names_in};
 use crate::path::{Path, Trail};
 use std::collections::BTreeSet;
 
@@ -48,17 +48,21 @@ impl Walk<'_> {
 
 /// Whether anything in a tree may change with the frame. Variables that nothing uses do not count.
 pub fn depends_on_time(tree: &Node) -> bool {
-    let mut search = Search::after_variables(tree);
-    parts(tree).any(|part| search.changes(part, false))
+    let mut changes = Changing::of(tree);
+    parts(tree).any(|part| changes.holds(part))
 }
 
 /// How many expressions depend on time.
 pub(super) fn changing_expressions(tree: &Node) -> usize {
-    let mut search = Search::after_variables(tree);
+    let mut changes = Changing::of(tree);
+    changes.expressions = 0;
+    for (_, variable) in tree.get("variables").into_iter().flat_map(Node::members) {
+        changes.search(&variable.node, true);
+    }
     parts(tree).for_each(|part| {
-        search.changes(part, false);
+        changes.holds(part);
     });
-    search.expressions
+    changes.expressions
 }
 
 /// The parts of a scene in which things may move.
@@ -67,40 +71,80 @@ fn parts(tree: &Node) -> impl Iterator<Item = &Node> {
     tree.members().filter(move |(key, _)| moves(key)).map(|(_, member)| &member.node)
 }
 
-struct Search<'t> {
-    /// Names whose values change with time.
-    changing: BTreeSet<&'t str>,
+/// Whether a value is worked out anew for each scene: it holds a value form, or an expression that names more than
+/// constants and functions.
+pub(crate) fn is_worked_out(node: &Node) -> bool {
+    match &node.value {
+        Value::String(text) => {
+            let constant = |name: &str| name == "pi" || FUNCTIONS.iter().any(|function| function.name == name);
+            text.strip_prefix('=').is_some_and(|text| names_in(text).any(|name| !constant(name)))
+        }
+        Value::Array(elements) => elements.iter().any(is_worked_out),
+        Value::Object(members) => {
+            values::kind_in(members).is_some() || members.values().any(|member| is_worked_out(&member.node))
+        }
+        _ => false,
+    }
+}
+
+/// What changes with time, by name: the search for it in values.
+pub(crate) struct Changing<'t> {
+    names: BTreeSet<&'t str>,
+    paths: BTreeSet<&'t str>,
     /// Expressions that changed so far.
     expressions: usize,
 }
 
-impl<'t> Search<'t> {
-    fn after_variables(tree: &'t Node) -> Self {
-        let mut search = Self { changing: BTreeSet::from(CHANGING), expressions: 0 };
-        for (name, member) in tree.get("variables").into_iter().flat_map(Node::members) {
-            if search.changes(&member.node, true) {
-                search.changing.insert(name);
+impl<'t> Changing<'t> {
+    /// By the variables and paths of a scene.
+    pub fn of(tree: &'t Node) -> Self {
+        let mut changing = Self { names: BTreeSet::from(CHANGING), paths: BTreeSet::new(), expressions: 0 };
+        // Variables may ask for paths, and paths for variables and for each other: until nothing is added.
+        loop {
+            let before = changing.names.len() + changing.paths.len();
+            for (name, member) in tree.get("variables").into_iter().flat_map(Node::members) {
+                if changing.search(&member.node, true) {
+                    changing.names.insert(name);
+                }
+            }
+            for (name, member) in tree.get("paths").into_iter().flat_map(Node::members) {
+                if changing.search(&member.node, false) {
+                    changing.paths.insert(name);
+                }
+            }
+            if changing.names.len() + changing.paths.len() == before {
+                return changing;
             }
         }
-        search
     }
 
-    /// Whether a value changes with time, all of it looked at; `bare` where texts are expressions without a sign in front, too.
-    fn changes(&mut self, node: &Node, bare: bool) -> bool {
+    /// Whether a value changes with time.
+    pub fn holds(&mut self, node: &Node) -> bool {
+        self.search(node, false)
+    }
+
+    /// All of a value is looked at; `bare` where texts are expressions without a sign in front, too.
+    fn search(&mut self, node: &Node, bare: bool) -> bool {
         match &node.value {
             Value::String(text) => {
                 let expression = text.strip_prefix('=').or_else(|| bare.then_some(text.as_str()));
-                let changes = expression.is_some_and(|text| names_in(text).any(|name| self.changing.contains(name)));
+                let changes = expression.is_some_and(|text| names_in(text).any(|name| self.names.contains(name)));
                 self.expressions += usize::from(changes);
                 changes
             }
-            Value::Array(elements) => elements.iter().filter(|element| self.changes(element, bare)).count() > 0,
+            Value::Array(elements) => elements.iter().filter(|element| self.search(element, bare)).count() > 0,
             Value::Object(members) => {
-                let own = values::kind_in(members).is_some_and(|_| looks_up_seconds(node));
-                members.values().filter(|member| self.changes(&member.node, false)).count() > 0 || own
+                let own = values::kind_in(members).is_some_and(|_| looks_up_seconds(node) || self.goes_along(node));
+                members.values().filter(|member| self.search(&member.node, false)).count() > 0 || own
             }
             _ => false,
         }
+    }
+
+    /// Whether a form follows a path that changes.
+    fn goes_along(&self, form: &Node) -> bool {
+        let path = form.get("along").and_then(|content| content.get("path")?.as_str());
+        path.is_some_and(|path| self.paths.contains(path))
     }
 }
 

@@ -4,6 +4,8 @@ use super::labels::Names;
 use super::materials::Materials;
 use super::placing::placed;
 use crate::description::Description;
+use crate::item::Item;
+use crate::motion::Tracks;
 use crate::path::Trail;
 use crate::report::Finding;
 use juggler_math::{Motion, Transform};
@@ -16,18 +18,17 @@ use std::sync::Arc;
 pub type Entries = (Vec<Object>, Vec<u32>);
 
 /// The area lights of a list by their numbers in it.
-pub fn of(lights: &[AnyLight]) -> impl Iterator<Item = (usize, &Area)> {
-    lights.iter().enumerate().filter_map(|(i, light)| match light {
+pub fn of(lights: &[Item<AnyLight>]) -> impl Iterator<Item = (usize, &Area)> {
+    lights.iter().enumerate().filter_map(|(i, light)| match &**light {
         AnyLight::Area(area) => Some((i, area)),
         _ => None,
     })
 }
 
-/// Adds the scene's area lights to its objects, and names their entries `lights[i]`. Where `moments` say otherwise than
-/// the scene, they move; size and radiance stay. Area lights that are wrong have been reported.
+/// Adds the scene's area lights to its objects, and names their entries `lights[i]`. Those that have `tracks` move; size and radiance stay. Area lights that are wrong have been reported.
 pub fn add(
     scene: &Description,
-    moments: &[Description],
+    tracks: &Tracks,
     materials: &mut Materials,
     names: &mut Names,
     (objects, entries): &mut Entries,
@@ -42,7 +43,7 @@ pub fn add(
         }
         let emissive = Emissive { radiance: area.radiance().into(), sides: Sides::Front, ..Emissive::default() };
         let material = materials.get(&MaterialRef::from(emissive), &lights.index(i), findings);
-        let motion = motion(moments, i).unwrap_or(place.into());
+        let motion = motion(tracks, i).unwrap_or(place.into());
         objects.push(placed(Content::Shape(Arc::new(shape)), motion, Some(material)));
         names.add_entry(format!("lights[{i}]"));
         entries.push(u32::try_from(shapes).unwrap_or(u32::MAX));
@@ -51,11 +52,11 @@ pub fn add(
 }
 
 /// Where a light is at even times; nothing for a light that stays.
-fn motion(moments: &[Description], light: usize) -> Option<Motion> {
-    let place = |at: &Description| match at.lights.get(light) {
-        Some(AnyLight::Area(area)) => area.placed().map(|(_, place)| place),
+fn motion(tracks: &Tracks, light: usize) -> Option<Motion> {
+    let place = |at: &Item<AnyLight>| match &**at {
+        AnyLight::Area(area) => area.placed().map(|(_, place)| place),
         _ => None,
     };
-    let keys: Option<Vec<Transform>> = moments.iter().map(place).collect();
-    Motion::through(keys.filter(|keys| !keys.is_empty())?)
+    let keys: Option<Vec<Transform>> = tracks.lights.get(&light)?.iter().map(place).collect();
+    Motion::through(keys?)
 }

@@ -2,6 +2,7 @@
 
 use super::emitting;
 use crate::description::{Description, Object};
+use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use indexmap::IndexMap;
@@ -93,7 +94,7 @@ struct Counter<'s> {
 }
 
 impl<'s> Counter<'s> {
-    fn objects(&mut self, objects: &'s [Object], path: &Path) -> u64 {
+    fn objects(&mut self, objects: &'s [Item<Object>], path: &Path) -> u64 {
         objects.iter().enumerate().fold(0, |sum: u64, (i, object)| sum.saturating_add(self.object(object, path, i)))
     }
 
@@ -158,12 +159,12 @@ pub fn shapes(object: &Object) -> u64 {
 }
 
 /// Calls `visit` with every group that the objects place.
-fn each_group<'s>(objects: &'s [Object], visit: &mut impl FnMut(&'s str)) {
+fn each_group<'s>(objects: &'s [Item<Object>], visit: &mut impl FnMut(&'s str)) {
     for object in objects.iter().filter(|object| object.is_visible()) {
         if let Some(group) = &object.group {
             visit(&group.0);
         }
-        each_group(object.objects.as_deref().unwrap_or_default(), visit);
+        each_group(object.inner(), visit);
     }
 }
 
@@ -177,7 +178,7 @@ fn count_placements(scene: &Description, counts: &mut Counts<'_>) {
     }
 }
 
-fn add_placements(objects: &[Object], times: u64, counts: &mut Counts<'_>) {
+fn add_placements(objects: &[Item<Object>], times: u64, counts: &mut Counts<'_>) {
     each_group(objects, &mut |name| {
         if let Some(count) = counts.get_mut(name) {
             count.placements = count.placements.saturating_add(times);
@@ -185,8 +186,8 @@ fn add_placements(objects: &[Object], times: u64, counts: &mut Counts<'_>) {
     });
 }
 
-fn objects_of<'s>(scene: &'s Description, group: &str) -> &'s [Object] {
-    scene.groups.get(group).map(Vec::as_slice).unwrap_or_default()
+fn objects_of<'s>(scene: &'s Description, group: &str) -> &'s [Item<Object>] {
+    scene.groups.get(group).map(|o| o.as_slice()).unwrap_or_default()
 }
 
 /// Decides for each group, those within it first, whether it is shared. Returns how many objects the scene stores.
@@ -204,9 +205,9 @@ fn count_stored(scene: &Description, counts: &mut Counts<'_>) -> u64 {
 
 /// Objects that are stored where `objects` stand, shared groups counted as one each, and the levels on the longest
 /// way down.
-fn store(objects: &[Object], counts: &Counts<'_>) -> (u64, u32) {
+fn store(objects: &[Item<Object>], counts: &Counts<'_>) -> (u64, u32) {
     objects.iter().filter(|object| object.is_visible()).fold((0_u64, 1), |(sum, depth), object| {
-        let inner = object.objects.as_deref().unwrap_or_default();
+        let inner = object.inner();
         let (mut stored, mut below) = store(inner, counts);
         stored = stored.saturating_add(shapes(object));
         if let Some(count) = object.group.as_ref().and_then(|group| counts.get(group.0.as_str())) {

@@ -3,6 +3,7 @@
 
 use super::count::{MAX_EMITTERS, shapes};
 use crate::description::{Description, Object};
+use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use juggler_tracer::material::{AnyMaterial, MaterialRef};
@@ -46,7 +47,7 @@ impl<'s> Search<'s> {
         Self { scene, materials: BTreeMap::new(), groups: BTreeMap::new() }
     }
 
-    fn among(&mut self, objects: &'s [Object], inherited: bool) -> u64 {
+    fn among(&mut self, objects: &'s [Item<Object>], inherited: bool) -> u64 {
         objects.iter().fold(0, |sum: u64, object| sum.saturating_add(self.object(object, inherited)))
     }
 
@@ -63,7 +64,7 @@ impl<'s> Search<'s> {
         if let Some(group) = &object.group {
             count = count.saturating_add(self.group(&group.0, emits));
         }
-        count.saturating_add(self.among(object.objects.as_deref().unwrap_or_default(), emits))
+        count.saturating_add(self.among(object.inner(), emits))
     }
 
     fn group(&mut self, name: &'s str, inherited: bool) -> u64 {
@@ -71,7 +72,7 @@ impl<'s> Search<'s> {
             return *count;
         }
         let scene = self.scene;
-        let objects = scene.groups.get(name).map(Vec::as_slice).unwrap_or_default();
+        let objects = scene.groups.get(name).map(|o| o.as_slice()).unwrap_or_default();
         let count = self.among(objects, inherited);
         self.groups.insert((name, inherited), count);
         count

@@ -98,7 +98,7 @@ impl Emitter {
                 Some(plane) => plane.normal(Vec3::Y).dot(self.normal).abs() < 0.9999 || is_ahead(plane.origin()),
                 None => object.bounds().is_empty() || corners(&object.bounds()).into_iter().any(is_ahead),
             })
-            && !scenery.scene.camera.iter().chain(scenery.scene.cameras.values()).any(eye)
+            && !scenery.scene.camera.iter().chain(scenery.scene.cameras.values()).any(|camera| eye(camera))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::meshes::{Files, Library, explain, state};
 use crate::description::Description;
 use crate::import::Limits;
+use crate::item::Item;
 use crate::path::Path;
 use crate::store::Store;
 use juggler_imaging::raster::{Layout, decode_raster, inspect_raster};
@@ -140,22 +141,25 @@ impl Files<'_> {
     /// Where a texture is described: among the scene's textures, or where it is written in place, by the name that it
     /// has got there.
     pub fn texture_path(&self, name: &str) -> Path {
-        let named = self.origin.and_then(|(_, tree)| tree.get("textures")?.get(name));
-        if named.is_none() && name.starts_with('/') {
-            return Path::from_pointer(name);
+        let own = Path::root().key("textures").key(name);
+        let in_place = Path::from_pointer(name);
+        // A texture is written in place where the item that it belongs to was written around it.
+        let place = |path: &Path| self.scene.item_of(path).and_then(|(item, _)| item.place());
+        match place(&in_place).zip(place(&own)) {
+            Some((outer, inner)) if name.starts_with('/') && outer.contains(inner) => in_place,
+            _ => own,
         }
-        Path::root().key("textures").key(name)
     }
 
     /// The file of an image texture.
     fn of_texture(&self, name: &str, image: &Image) -> PathBuf {
-        self.locate(&self.texture_path(name).key("image").key("file"), &image.file)
+        self.locate(&Path::root().key("textures").key(name), &image.file)
     }
 }
 
 /// The pictures that a scene names, each once.
 pub fn pictures(scene: &Description, files: &Files<'_>) -> BTreeSet<Name> {
-    let image = |(name, texture): (&String, &AnyTexture)| match texture {
+    let image = |(name, texture): (&String, &Item<AnyTexture>)| match &**texture {
         AnyTexture::Image(image) => Some((files.of_texture(name, image), image.color_space)),
         _ => None,
     };

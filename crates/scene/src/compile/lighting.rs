@@ -2,9 +2,10 @@
 
 use super::images::{Estimate, MAX_PICTURE, MAX_TEXELS};
 use super::meshes::{Files, Library};
-use super::shelf::{Item, Shelf};
+use super::shelf::{Shelf, Shelved};
 use crate::description::{Backdrop, Description};
 use crate::import::Limits;
+use crate::item::Item;
 use crate::kind::name_of;
 use crate::path::Path;
 use crate::report::Finding;
@@ -63,7 +64,7 @@ impl Lighting {
 }
 
 impl Library {
-    fn panorama(&self, path: &std::path::Path) -> Arc<Item<Panorama>> {
+    fn panorama(&self, path: &std::path::Path) -> Arc<Shelved<Panorama>> {
         let shown = path.display();
         self.lighting().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
             let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &MAX_PICTURE);
@@ -71,7 +72,7 @@ impl Library {
         })
     }
 
-    fn profile(&self, path: &std::path::Path) -> Arc<Item<Profile>> {
+    fn profile(&self, path: &std::path::Path) -> Arc<Shelved<Profile>> {
         let shown = path.display();
         let limits = Limits { file_bytes: MAX_PROFILE_BYTES, ..Limits::default() };
         self.lighting().profiles.load(path, self.store(), &limits, |bytes| {
@@ -101,12 +102,12 @@ fn of_light(number: usize, light: &AnyLight) -> Path {
 /// The files that a scene's background and lights name, each once.
 pub fn files(scene: &Description, files: &Files<'_>) -> BTreeSet<(PathBuf, Purpose)> {
     let mut found = BTreeSet::new();
-    if let Some(Backdrop::Kind(background @ AnyBackground::Environment(environment))) = &scene.background {
+    if let Some(Backdrop::Kind(background @ AnyBackground::Environment(environment))) = scene.background.as_deref() {
         let path = of_background(background).key("file");
         found.insert((files.locate(&path, &environment.file), Purpose::Panorama));
     }
     for (i, light) in scene.lights.iter().enumerate() {
-        if let Some(ies) = light.clone().ies() {
+        if let Some(ies) = (**light).clone().ies() {
             found.insert((files.locate(&of_light(i, light), &ies.file), Purpose::Profile));
         }
     }
@@ -114,26 +115,29 @@ pub fn files(scene: &Description, files: &Files<'_>) -> BTreeSet<(PathBuf, Purpo
 }
 
 /// Lights with what their files hold.
-pub fn lights(lights: &[AnyLight], files: Files<'_>, findings: &mut Vec<Finding>) -> Vec<AnyLight> {
-    let mut lights = lights.to_vec();
-    for (i, light) in lights.iter_mut().enumerate() {
-        // The path is made only where it is needed: a scene may have a million lights.
-        if light.ies().is_none() {
-            continue;
-        }
-        let path = of_light(i, light);
-        let Some(ies) = light.ies() else { continue };
-        match &files.library.profile(&files.locate(&path, &ies.file)).content {
-            Ok(profile) => ies.set_profile(Arc::clone(profile)),
-            Err(message) => findings.push(Finding::error(message.clone()).at(&path)),
+pub fn lights(lights: &[Item<AnyLight>], files: Files<'_>, findings: &mut Vec<Finding>) -> Vec<AnyLight> {
+    lights.iter().enumerate().map(|(i, light)| loaded(i, light, files, findings)).collect()
+}
+
+/// Light number `i` with what its file holds.
+pub fn loaded(i: usize, light: &AnyLight, files: Files<'_>, findings: &mut Vec<Finding>) -> AnyLight {
+    let mut light = light.clone();
+    // The path is made only where it is needed: a scene may have a million lights.
+    if light.ies().is_some() {
+        let path = of_light(i, &light);
+        if let Some(ies) = light.ies() {
+            match &files.library.profile(&files.locate(&path, &ies.file)).content {
+                Ok(profile) => ies.set_profile(Arc::clone(profile)),
+                Err(message) => findings.push(Finding::error(message.clone()).at(&path)),
+            }
         }
     }
-    lights
+    light
 }
 
 /// The scene's background, ready to be used; nothing when there is none, or one that cannot be.
 pub fn background(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Option<AnyBackground> {
-    let mut background = AnyBackground::from(scene.background.clone()?);
+    let mut background = AnyBackground::from(scene.background.clone()?.into_inner());
     let path = of_background(&background);
     if let AnyBackground::Environment(environment) = &mut background {
         let path = path.key("file");

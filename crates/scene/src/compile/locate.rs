@@ -4,6 +4,7 @@
 use super::areas;
 use super::count::{self, Counts};
 use crate::description::{Description, Object};
+use crate::item::Item;
 use crate::kind::name_of;
 use crate::path::Path;
 use juggler_tracer::material::MaterialRef;
@@ -46,7 +47,7 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    fn among(&self, objects: &[Object], at: &Path, mut number: u64, inherited: String) -> Option<Part> {
+    fn among(&self, objects: &[Item<Object>], at: &Path, mut number: u64, inherited: String) -> Option<Part> {
         for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let count = self.count(object);
             if number < count {
@@ -62,7 +63,7 @@ impl Search<'_> {
             return 0;
         }
         let group = object.group.as_ref().and_then(|group| self.counts.get(group.0.as_str()));
-        let inner = object.objects.iter().flatten().map(|object| self.count(object));
+        let inner = object.inner().iter().map(|object| self.count(object));
         count::shapes(object) + group.map_or(0, count::Count::objects) + inner.sum::<u64>()
     }
 

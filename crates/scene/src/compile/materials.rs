@@ -20,7 +20,7 @@ pub struct Materials {
 impl Materials {
     /// Takes the scene's textures and named materials.
     pub fn new(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
-        let named = scene.textures.iter().map(|(name, texture)| (name.clone(), texture.clone()));
+        let named = scene.textures.iter().map(|(name, texture)| (name.clone(), (**texture).clone()));
         let (textures, errors) = TextureTable::compile(named, &files);
         // Unknown names have been reported: `validate::names`.
         for (name, error) in errors.iter().filter(|(_, error)| !error.is_unknown_name()) {
@@ -28,9 +28,9 @@ impl Materials {
             let path = files.texture_path(name).key(kind);
             findings.push(Finding::error(error.to_string()).at(path.join(error.path())));
         }
-        let named = scene.materials.iter().map(|(name, material)| (name.clone(), material.clone()));
+        let named = scene.materials.iter().map(|(name, material)| (name.clone(), (**material).clone()));
         let compiler = MaterialCompiler::new(textures, named);
-        Self { compiler, plain: None, glows: scene.materials.values().any(glows) }
+        Self { compiler, plain: None, glows: scene.materials.values().any(|material| glows(material)) }
     }
 
     /// The material that stands at `path`; a plain one where there is a mistake.

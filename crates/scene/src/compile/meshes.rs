@@ -2,7 +2,8 @@
 
 use super::images::Pictures;
 use super::lighting::Lighting;
-use crate::document::{Node, Sources};
+use crate::description::Description;
+use crate::document::Sources;
 use crate::import::{Fault, ImportError, Limits, parse};
 use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
@@ -132,8 +133,10 @@ pub(super) fn explain(error: &ImportError) -> String {
 /// Where a scene's files lie.
 #[derive(Clone, Copy)]
 pub struct Files<'s> {
-    /// The texts of the scene, and its tree with the places in them; nothing for scenes made by programs.
-    pub origin: Option<(&'s Sources, &'s Node)>,
+    /// The scene.
+    pub scene: &'s Description,
+    /// The texts that it was read from; none for scenes made by programs.
+    pub sources: &'s Sources,
     /// What was loaded before.
     pub library: &'s Library,
 }
@@ -141,10 +144,8 @@ pub struct Files<'s> {
 impl Files<'_> {
     /// A file named at `path`, relative to the scene file that names it.
     pub fn locate(&self, path: &Path, file: &str) -> PathBuf {
-        match self.origin {
-            Some((sources, tree)) => sources.folder(tree.place_of(path).0).join(file),
-            None => PathBuf::from(file),
-        }
+        let place = self.scene.item_of(path).and_then(|(item, _)| item.place());
+        self.sources.folder(place).join(file)
     }
 
     /// The mesh that a description at `path` means: its own arrays, or those of its file, blended with its morphs.

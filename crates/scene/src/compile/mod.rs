@@ -2,6 +2,7 @@
 
 use crate::description::{Description, Render};
 use crate::integrator::IntegratorChoice;
+use crate::motion::Tracks;
 use crate::path::Path;
 use crate::report::{Finding, Problems};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
@@ -106,9 +107,9 @@ impl Compiled {
 }
 
 impl Assembly {
-    /// Puts everything together; what cannot be is left out and reported. `moments` are what the scene is at even times
-    /// from opening to closing of the shutter; nothing when it does not change.
-    pub fn of(scene: &Description, moments: &[Description], files: Files<'_>) -> (Self, Vec<Finding>) {
+    /// Puts everything together; what cannot be is left out and reported. `tracks` are what moves
+    /// while the shutter is open.
+    pub fn of(scene: &Description, tracks: &Tracks, files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
         let integrator = IntegratorChoice::of(scene);
         settings::check(&scene.render, &mut findings);
@@ -118,15 +119,15 @@ impl Assembly {
         let background = lighting::background(scene, files, &mut findings);
         let mut materials = materials::Materials::new(scene, files, &mut findings);
         let mut names = Names::of(scene);
-        let mut placed = placed(scene, moments, files, &mut materials, &mut findings);
+        let mut placed = placed(scene, tracks, files, &mut materials, &mut findings);
         let glows = materials.glows() || background.as_ref().is_some_and(|b| lights(&integrator, b));
         let lit = glows || !scene.lights.is_empty();
         let (bounds, farthest) = (bounds(&placed.0), farthest(&placed.0, &placed.1));
-        areas::add(scene, moments, &mut materials, &mut names, &mut placed, &mut findings);
+        areas::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
-        let (cameras, course) = cameras(scene, moments, &bounds, &farthest, &mut findings);
+        let (cameras, course) = cameras(scene, tracks, &bounds, &farthest, &mut findings);
         let default = || defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect();
-        let lights = if lit { lamps(&sources, moments, files, &names) } else { default() };
+        let lights = if lit { lamps(&sources, tracks, files, &names) } else { default() };
         let illuminance = illuminance::at_the_middle(&lights, lit, &bounds);
         findings.extend((lit && !glows).then(|| illuminance::warning(scene, &lights, &bounds)).flatten());
         let labels = names.labels(scene, entries);
@@ -163,13 +164,13 @@ impl Assembly {
 /// reported, and none of them is placed.
 fn placed(
     scene: &Description,
-    moments: &[Description],
+    tracks: &Tracks,
     files: Files<'_>,
     materials: &mut materials::Materials,
     findings: &mut Vec<Finding>,
 ) -> (Vec<Object>, Vec<u32>) {
     match count::count(scene) {
-        Ok(counts) => placing::place(scene, moments, &counts, files, materials, findings),
+        Ok(counts) => placing::place(scene, tracks, &counts, files, materials, findings),
         Err(problems) => {
             findings.extend(problems);
             (Vec::new(), Vec::new())
@@ -178,10 +179,8 @@ fn placed(
 }
 
 /// The scene's lights, which may change while the shutter is open.
-fn lamps(sources: &[AnyLight], moments: &[Description], files: Files<'_>, names: &Names) -> Vec<Lamp> {
-    // What is wrong with files has been said.
-    let loaded = |moment: &Description| lighting::lights(&moment.lights, files, &mut Vec::new());
-    let mut lamps = course::lamps(sources, &moments.iter().map(loaded).collect::<Vec<_>>());
+fn lamps(sources: &[AnyLight], tracks: &Tracks, files: Files<'_>, names: &Names) -> Vec<Lamp> {
+    let mut lamps = course::lamps(sources, tracks, files);
     names.mark(&mut lamps, sources);
     lamps
 }
@@ -192,12 +191,12 @@ type Cameras = (Vec<(String, AnyCamera)>, Vec<AnyCamera>);
 /// How a scene looks at its world, which is there already; `bounds` are those of its objects.
 pub fn look_at(
     scene: &Description,
-    moments: &[Description],
+    tracks: &Tracks,
     bounds: &Aabb,
 ) -> (Vec<(String, AnyCamera)>, Vec<AnyCamera>, Vec<Finding>) {
     let mut findings = Vec::new();
     settings::check(&scene.render, &mut findings);
-    let (cameras, course) = cameras(scene, moments, bounds, &Path::root().key("objects"), &mut findings);
+    let (cameras, course) = cameras(scene, tracks, bounds, &Path::root().key("objects"), &mut findings);
     (cameras, course, findings)
 }
 
@@ -240,7 +239,7 @@ fn farthest(objects: &[Object], entries: &[u32]) -> Path {
 /// fault of the object that reaches `farthest`.
 fn cameras(
     scene: &Description,
-    moments: &[Description],
+    tracks: &Tracks,
     bounds: &Aabb,
     farthest: &Path,
     findings: &mut Vec<Finding>,
@@ -250,7 +249,7 @@ fn cameras(
     let mut cameras: Vec<(String, AnyCamera)> = Vec::new();
     if let Some(camera) = &scene.camera {
         try_camera(camera, size, &Path::root().key("camera"), findings);
-        cameras.push(("camera".into(), camera.clone()));
+        cameras.push(("camera".into(), (**camera).clone()));
         if !scene.cameras.is_empty() {
             let problem = Finding::error("a scene has either `camera` or `cameras`, not both");
             findings.push(problem.at(Path::root().key("camera")).help("move it into `cameras` under a name"));
@@ -258,7 +257,7 @@ fn cameras(
     }
     for (name, camera) in &scene.cameras {
         try_camera(camera, size, &Path::root().key("cameras").key(name.as_str()), findings);
-        cameras.push((name.clone(), camera.clone()));
+        cameras.push((name.clone(), (**camera).clone()));
     }
     if cameras.is_empty() {
         cameras.push(("default".into(), default_camera(bounds, size, farthest, findings)));
@@ -268,11 +267,11 @@ fn cameras(
     {
         cameras[..=at].rotate_right(1);
     }
-    let course = cameras.first().map(|(name, _)| course::camera(scene, moments, name)).unwrap_or_default();
-    for (camera, moment) in course.iter().zip(moments) {
+    let course = cameras.first().map(|(name, _)| course::camera(tracks, name, scene)).unwrap_or_default();
+    for camera in &course {
         // The same mistake at the frame itself has been reported.
         if let (Err(invalid), true) = (camera.project(size), !findings.iter().any(Finding::is_error)) {
-            let path = Path::root().key(if moment.camera.is_some() { "camera" } else { "cameras" });
+            let path = Path::root().key(if scene.camera.is_some() { "camera" } else { "cameras" });
             let message = format!("while the shutter is open, {}", invalid.message);
             findings.push(Finding::error(message).at(path.join(invalid.field)));
         }

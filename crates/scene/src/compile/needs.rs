@@ -7,6 +7,7 @@ use super::images::pictures;
 use super::lighting::{self, Purpose};
 use super::meshes::Files;
 use crate::description::{Description, Object};
+use crate::item::Item;
 use crate::path::Trail;
 use juggler_tracer::material::{AnyMaterial, MaterialRef};
 use juggler_tracer::shape::AnyShape;
@@ -45,7 +46,7 @@ impl Needs {
         let objects = counts.as_ref().map_or(0, |counts| stored(scene, counts).saturating_add(areas));
         let emitters = counts.as_ref().map_or(0, |_| emitters(scene).saturating_add(areas));
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
-        let text = files.origin.map_or(0, |(sources, _)| sources.bytes_to_read());
+        let text = files.sources.bytes_to_read();
         let mut needs = Self { text, objects, emitters, shadows, ..Self::default() };
         let pictures = pictures(scene, &files).into_iter();
         needs.pictures = pictures.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
@@ -58,7 +59,7 @@ impl Needs {
         needs
     }
 
-    fn add(&mut self, objects: &[Object], files: Files<'_>, path: &Trail<'_>) {
+    fn add(&mut self, objects: &[Item<Object>], files: Files<'_>, path: &Trail<'_>) {
         for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
             let path = path.index(i);
             if let Some(MaterialRef::Inline(material)) = &object.material {
@@ -70,7 +71,7 @@ impl Needs {
                 let file = mesh.file.as_ref().map(|file| files.locate(&path, file));
                 self.files.extend(file.and_then(|file| std::fs::canonicalize(file).ok()));
             }
-            self.add(object.objects.as_deref().unwrap_or_default(), files, &path.key("objects"));
+            self.add(object.inner(), files, &path.key("objects"));
         }
     }
 

@@ -4,6 +4,8 @@ use super::count::Counts;
 use super::materials::Materials;
 use super::meshes::Files;
 use crate::description::{Bead, Description, Object, TransformStep};
+use crate::item::Item;
+use crate::motion::{ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, Trail};
 use crate::report::Finding;
 use juggler_math::{Motion, Transform, Vec3};
@@ -13,11 +15,11 @@ use juggler_tracer::world::{self, Content as Placed, Level};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// All objects of a scene whose groups were counted, and of each entry of the scene the number of its first shape. Where `moments` of the time that the shutter is open say otherwise
-/// than the scene, they move.
+/// All objects of a scene whose groups were counted, and of each entry of the scene the number of its first shape. Objects
+/// that have `tracks` move.
 pub fn place(
     scene: &Description,
-    moments: &[Description],
+    tracks: &Tracks,
     counts: &Counts<'_>,
     files: Files<'_>,
     materials: &mut Materials,
@@ -25,18 +27,13 @@ pub fn place(
 ) -> (Vec<world::Object>, Vec<u32>) {
     let mut preparing = Preparing { files, materials, findings };
     let groups = Trail::Root.key("groups");
-    let groups = scene
-        .groups
-        .iter()
-        .map(|(name, objects)| {
-            let moments: Option<Vec<&[Object]>> =
-                moments.iter().map(|at| at.groups.get(name).map(Vec::as_slice)).collect();
-            let moments = moments.unwrap_or_default();
-            (name.as_str(), preparing.objects(objects, &moments, &groups.key(name)))
-        })
-        .collect();
-    let moments: Vec<&[Object]> = moments.iter().map(|at| at.objects.as_slice()).collect();
-    let top = preparing.objects(&scene.objects, &moments, &Trail::Root.key("objects"));
+    let still = ListTracks::new();
+    let groups = scene.groups.iter().map(|(name, objects)| {
+        let tracks = tracks.groups.get(name).unwrap_or(&still);
+        (name.as_str(), preparing.objects(objects, Times::Tracks(tracks), &groups.key(name)))
+    });
+    let groups = groups.collect();
+    let top = preparing.objects(&scene.objects, Times::Tracks(&tracks.objects), &Trail::Root.key("objects"));
     let plain = preparing.materials.plain();
     let mut placing = Placing { groups, levels: BTreeMap::new() };
     // Groups come after those that they place: a shared one finds its own levels built.
@@ -62,6 +59,39 @@ enum Content<'s> {
     Objects(Vec<Prepared<'s>>),
 }
 
+/// The objects of a list at even times while the shutter is open.
+enum Times<'t> {
+    /// Those that move, one by one.
+    Tracks(&'t ListTracks),
+    /// The whole list at each time.
+    Lists(Vec<&'t [Item<Object>]>),
+    /// They stand still.
+    Still,
+}
+
+impl<'t> Times<'t> {
+    /// The same for a list of so many objects: where there are not as many at each time, none moves.
+    fn fitting(self, count: usize) -> Self {
+        match self {
+            Self::Lists(lists) if lists.iter().any(|list| list.len() != count) => Self::Still,
+            times => times,
+        }
+    }
+
+    /// An object at the times, when it moves as a whole, and the objects within it.
+    fn of(&self, i: usize) -> (Vec<&'t Object>, Times<'t>) {
+        match self {
+            Self::Tracks(tracks) => match tracks.get(&i) {
+                Some(ObjectTrack::Whole(keys)) => (keys.iter().map(|key| &**key).collect(), Times::Still),
+                Some(ObjectTrack::Inner(inner)) => (Vec::new(), Times::Tracks(inner)),
+                None => (Vec::new(), Times::Still),
+            },
+            Self::Lists(lists) => (lists.iter().filter_map(|list| list.get(i).map(|o| &**o)).collect(), Times::Still),
+            Self::Still => (Vec::new(), Times::Still),
+        }
+    }
+}
+
 struct Preparing<'m> {
     files: Files<'m>,
     materials: &'m mut Materials,
@@ -69,28 +99,40 @@ struct Preparing<'m> {
 }
 
 impl Preparing<'_> {
-    /// `moments` are the same objects at other times; where there are not as many, nothing moves.
-    fn objects<'s>(&mut self, objects: &'s [Object], moments: &[&[Object]], path: &Trail<'_>) -> Vec<Prepared<'s>> {
-        let moments = if moments.iter().all(|at| at.len() == objects.len()) { moments } else { &[] };
-        let object = |(i, object): (usize, &'s Object)| {
-            let at: Vec<&Object> = moments.iter().filter_map(|at| at.get(i)).collect();
-            let at = if at.iter().all(|other| *other == object) { &[] } else { at.as_slice() };
-            Some(Prepared { index: i, ..self.object(object, at, &path.index(i))? })
+    fn objects<'s>(&mut self, objects: &'s [Item<Object>], times: Times<'_>, path: &Trail<'_>) -> Vec<Prepared<'s>> {
+        let times = times.fitting(objects.len());
+        let object = |(i, object): (usize, &'s Item<Object>)| {
+            let (at, inner) = times.of(i);
+            let at = if at.iter().all(|other| **other == **object) { &[] } else { at.as_slice() };
+            Some(Prepared { index: i, ..self.object(object, at, inner, &path.index(i))? })
         };
         let visible = objects.iter().enumerate().filter(|(_, object)| object.is_visible());
         visible.filter_map(object).collect()
     }
 
-    fn object<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Prepared<'s>> {
+    /// An object that is another one `at` even times, or that holds such objects.
+    fn object<'s>(
+        &mut self,
+        object: &'s Object,
+        at: &[&Object],
+        inner: Times<'_>,
+        path: &Trail<'_>,
+    ) -> Option<Prepared<'s>> {
         let motion = self.motion(&object.transform, at, &path.key("transform"));
         let material = object.material.as_ref();
         let material = material.map(|m| self.materials.get(m, &path.key("material"), self.findings));
-        let content = self.content(object, at, path)?;
+        let content = self.content(object, at, inner, path)?;
         Some(Prepared { index: 0, motion: motion?, material, content })
     }
 
     /// The one thing that an object is. That it is exactly one has been checked before.
-    fn content<'s>(&mut self, object: &'s Object, at: &[&Object], path: &Trail<'_>) -> Option<Content<'s>> {
+    fn content<'s>(
+        &mut self,
+        object: &'s Object,
+        at: &[&Object],
+        inner: Times<'_>,
+        path: &Trail<'_>,
+    ) -> Option<Content<'s>> {
         if let Some(shape) = &object.shape {
             let others = all(at, |at| at.shape.as_ref());
             let prepared = self.shape(shape, &others, &path.key("shape"))?;
@@ -98,8 +140,9 @@ impl Preparing<'_> {
         } else if let Some(group) = &object.group {
             Some(Content::Group(&group.0))
         } else if let Some(objects) = &object.objects {
-            let at = all(at, |at| at.objects.as_deref());
-            Some(Content::Objects(self.objects(objects, &at, &path.key("objects"))))
+            let lists = all(at, |at| at.objects.as_ref().map(|objects| objects.as_slice()));
+            let times = if lists.is_empty() { inner } else { Times::Lists(lists) };
+            Some(Content::Objects(self.objects(objects, times, &path.key("objects"))))
         } else if let Some(chain) = &object.chain {
             let at = all(at, |at| Some(at.chain.as_ref()?.beads().collect()));
             Some(self.beads(chain.beads().collect(), at, &path.key("chain")))

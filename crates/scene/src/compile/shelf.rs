@@ -10,11 +10,11 @@ use std::time::SystemTime;
 
 /// Files of one sort by their true names. Clones share them.
 #[derive(Debug)]
-pub struct Shelf<T>(Arc<Mutex<BTreeMap<PathBuf, Arc<Item<T>>>>>);
+pub struct Shelf<T>(Arc<Mutex<BTreeMap<PathBuf, Arc<Shelved<T>>>>>);
 
 /// A file that was read.
 #[derive(Debug)]
-pub struct Item<T> {
+pub struct Shelved<T> {
     /// The hash of its content; zeros when it could not be read.
     pub digest: [u8; 32],
     /// What it holds; or why nothing, in words that name the file.
@@ -38,7 +38,7 @@ impl<T> Default for Shelf<T> {
 impl<T> Shelf<T> {
     /// Those whose files have not changed.
     pub fn renewed(&self) -> Self {
-        let same = |path: &PathBuf, item: &Item<T>| item.state.is_some() && item.state == state(path);
+        let same = |path: &PathBuf, item: &Shelved<T>| item.state.is_some() && item.state == state(path);
         let entries = self.entries();
         let kept = entries.iter().filter(|(path, item)| same(path, item));
         Self(Arc::new(Mutex::new(kept.map(|(path, item)| (path.clone(), Arc::clone(item))).collect())))
@@ -52,7 +52,7 @@ impl<T> Shelf<T> {
         store: &Store,
         limits: &Limits,
         read: impl FnOnce(&[u8]) -> Result<T, String>,
-    ) -> Arc<Item<T>> {
+    ) -> Arc<Shelved<T>> {
         let name = store.true_name(path);
         if let Some(known) = self.entries().get(&name) {
             return Arc::clone(known);
@@ -61,14 +61,14 @@ impl<T> Shelf<T> {
         let item = match store.mesh(path, limits) {
             Ok(bytes) => {
                 let digest = blake3::hash(&bytes).into();
-                Item { digest, content: read(&bytes).map(Arc::new), state }
+                Shelved { digest, content: read(&bytes).map(Arc::new), state }
             }
-            Err(error) => Item { digest: [0; 32], content: Err(explain(&error)), state },
+            Err(error) => Shelved { digest: [0; 32], content: Err(explain(&error)), state },
         };
         Arc::clone(self.entries().entry(name).or_insert(Arc::new(item)))
     }
 
-    fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<Item<T>>>> {
+    fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<Shelved<T>>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,6 +1,11 @@
 //! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder all come
 //! from here and from the families of `juggler_tracer`.
 
+use crate::item::Item;
+use crate::motion::{AnyItem, ListForm};
+use crate::report::Finding;
+use crate::shared::Shared;
+use crate::validate::{self, Known, validate};
 use indexmap::IndexMap;
 use juggler_imaging::Tone;
 use juggler_math::Rgb;
@@ -11,21 +16,31 @@ use juggler_tracer::material::AnyMaterial;
 use juggler_tracer::texture::AnyTexture;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 mod animation;
 mod bones;
 mod object;
+mod read;
 mod render;
 mod spheres;
 mod transform;
+mod written;
 
 pub use animation::{Animation, Component, ScenePath, Variable};
 pub use bones::Bones;
 pub(crate) use bones::positive_items;
 pub use object::{GroupName, Object, Visible};
+pub(crate) use read::described;
 pub use render::{CameraName, Render};
 pub use spheres::{Bead, Chain, ControlSphere, Limb};
 pub use transform::{Axes, LookAt, Rotate, TransformStep};
+pub(crate) use written::Written;
+
+/// Objects in order.
+pub type Objects = Shared<Vec<Item<Object>>>;
+/// Items by name, in the order in which they were added.
+pub type Named<T> = Shared<IndexMap<String, Item<T>>>;
 
 /// A scene: everything that decides a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,46 +63,54 @@ pub struct Description {
     #[serde(default, skip_serializing_if = "Animation::is_still")]
     pub animation: Animation,
     /// Named numbers and vectors for `"=expressions"`, in order: each may use those before it.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub variables: IndexMap<String, Variable>,
+    #[serde(default, skip_serializing_if = "Written::is_empty")]
+    #[schemars(with = "IndexMap<String, Variable>")]
+    pub(crate) variables: Written,
     /// Curves by name, for the value form `along`. A scene that is written at one frame has none any more.
-    #[serde(default, skip_serializing)]
-    pub paths: IndexMap<String, ScenePath>,
+    #[serde(default, skip_serializing_if = "Written::is_empty")]
+    #[schemars(with = "IndexMap<String, ScenePath>")]
+    pub(crate) paths: Written,
     /// How the picture is made.
     #[serde(default)]
-    pub render: Render,
+    pub render: Item<Render>,
     /// How linear light becomes the levels of a picture file.
     #[serde(default)]
-    pub tone: Tone,
+    pub tone: Item<Tone>,
     /// The camera, when there is one. Without any, one is placed that sees all objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub camera: Option<AnyCamera>,
+    pub camera: Option<Item<AnyCamera>>,
     /// Cameras by name; the first is used unless `render.camera` or the command line names another.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub cameras: IndexMap<String, AnyCamera>,
+    #[serde(default, skip_serializing_if = "is_empty_map")]
+    pub cameras: Named<AnyCamera>,
     /// What rays see that leave the world. Black, or a soft sky when the scene has no light of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub background: Option<Backdrop>,
+    pub background: Option<Item<Backdrop>>,
     /// The group of lights that the background's light is kept apart with in layers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background_light_group: Option<String>,
     /// Textures by name.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub textures: IndexMap<String, AnyTexture>,
+    #[serde(default, skip_serializing_if = "is_empty_map")]
+    pub textures: Named<AnyTexture>,
     /// Materials by name.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub materials: IndexMap<String, AnyMaterial>,
+    #[serde(default, skip_serializing_if = "is_empty_map")]
+    pub materials: Named<AnyMaterial>,
     /// Groups of objects by name, to be placed any number of times, groups within groups too. What repeats often is
     /// stored once.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub groups: IndexMap<String, Vec<Object>>,
+    #[serde(default, skip_serializing_if = "is_empty_map")]
+    pub groups: Shared<IndexMap<String, Objects>>,
     /// The lights. A scene without lights, without emissive materials and without a background that lights it (an
     /// `environment`, a `sky`, and under `path` every other) gets a soft light above the camera.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub lights: Vec<AnyLight>,
+    #[serde(default, skip_serializing_if = "is_empty_list")]
+    pub lights: Shared<Vec<Item<AnyLight>>>,
     /// What is to be seen.
     #[serde(default)]
-    pub objects: Vec<Object>,
+    pub objects: Objects,
+    /// Lists that are written as one value form, with what the form gives at the scene's frame.
+    #[serde(skip)]
+    pub(crate) list_forms: Shared<Vec<ListForm>>,
+    /// Names of textures that value forms give in place.
+    #[serde(skip)]
+    pub(crate) form_textures: Shared<BTreeSet<String>>,
 }
 
 impl Default for Description {
@@ -98,19 +121,21 @@ impl Default for Description {
             description: String::new(),
             include: Vec::new(),
             animation: Animation::default(),
-            variables: IndexMap::new(),
-            paths: IndexMap::new(),
-            render: Render::default(),
-            tone: Tone::default(),
+            variables: Written::default(),
+            paths: Written::default(),
+            render: Item::default(),
+            tone: Item::default(),
             camera: None,
-            cameras: IndexMap::new(),
+            cameras: Named::default(),
             background: None,
             background_light_group: None,
-            textures: IndexMap::new(),
-            materials: IndexMap::new(),
-            groups: IndexMap::new(),
-            lights: Vec::new(),
-            objects: Vec::new(),
+            textures: Named::default(),
+            materials: Named::default(),
+            groups: Shared::default(),
+            lights: Shared::default(),
+            objects: Objects::default(),
+            list_forms: Shared::default(),
+            form_textures: Shared::default(),
         }
     }
 }
@@ -162,5 +187,48 @@ impl From<AnyBackground> for Backdrop {
             AnyBackground::Solid(Solid { color }) => Self::Color(color),
             kind => Self::Kind(kind),
         }
+    }
+}
+
+fn is_empty_map<T>(map: &Shared<IndexMap<String, T>>) -> bool {
+    map.is_empty()
+}
+
+fn is_empty_list<T>(list: &Shared<Vec<T>>) -> bool {
+    list.is_empty()
+}
+
+impl Description {
+    /// Lets everything stand as it is.
+    pub(crate) fn stand_still(&mut self) {
+        for wanted in self.worked_out(|_| true) {
+            if let Some(item) = self.item_mut(&wanted.path) {
+                item.set_template(None);
+            }
+        }
+        (self.list_forms, self.form_textures) = Default::default();
+        (self.variables, self.paths, self.animation) = Default::default();
+    }
+
+    /// What does not fit the schema beside items.
+    pub(crate) fn head_findings(&self) -> Vec<Finding> {
+        let head = Self {
+            version: self.version,
+            animation: self.animation,
+            background_light_group: self.background_light_group.clone(),
+            ..Self::default()
+        };
+        validate(&serde_json::to_value(&head).unwrap_or_default().into()).all()
+    }
+
+    /// What does not fit the schema in the items that are to be looked at.
+    pub(crate) fn item_findings(&self, is_wanted: impl Fn(&dyn AnyItem) -> bool) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        self.each_item(&mut |at, item| {
+            if is_wanted(item) {
+                findings.extend(validate::item(&item.json().into(), &at.into(), at, Known::Scene(self)).all());
+            }
+        });
+        findings
     }
 }

@@ -4,7 +4,8 @@
 //! {"shape": {"sphere": {"radius": 1}}, "transform": [{"translate": [0, 1, 0]}], "material": "red"}
 //! ```
 
-use super::{Axes, Chain, Limb, Rotate, TransformStep, transform};
+use super::{Axes, Chain, Limb, Objects, Rotate, TransformStep, transform};
+use crate::item::Item;
 use juggler_math::Vec3;
 use juggler_tracer::material::{AnyMaterial, MaterialRef};
 use juggler_tracer::shape::AnyShape;
@@ -33,7 +34,7 @@ pub struct Object {
     pub group: Option<GroupName>,
     /// Several objects as one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub objects: Option<Vec<Object>>,
+    pub objects: Option<Objects>,
     /// Spheres in a row from one to another.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chain: Option<Chain>,
@@ -110,6 +111,11 @@ impl Object {
         self.visible.0
     }
 
+    /// The objects that it holds itself.
+    pub fn inner(&self) -> &[Item<Self>] {
+        self.objects.as_ref().map(|objects| objects.as_slice()).unwrap_or_default()
+    }
+
     /// One shape around the origin.
     pub fn new(shape: impl Into<AnyShape>) -> Self {
         Self { shape: Some(shape.into()), ..Self::default() }
@@ -122,7 +128,7 @@ impl Object {
 
     /// Several objects as one.
     pub fn several(objects: impl IntoIterator<Item = Self>) -> Self {
-        Self { objects: Some(objects.into_iter().collect()), ..Self::default() }
+        Self { objects: Some(objects.into_iter().map(Item::from).collect()), ..Self::default() }
     }
 
     /// Spheres in a row.

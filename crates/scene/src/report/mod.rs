@@ -72,13 +72,17 @@ impl Finding {
         shared > 0 && a.steps().iter().zip(b.steps()).all(|(a, b)| a == b)
     }
 
+    /// The value that it is about.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.path.as_ref()
+    }
+
     /// Whether there is no picture.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
 
     /// Whether the message holds these words.
-    #[cfg(test)]
     pub(crate) fn says(&self, words: &str) -> bool {
         self.message.contains(words)
     }
@@ -107,12 +111,13 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Works out places from paths and paths from places. `tree` is the merged scene, when it got that far.
-    pub fn new(findings: Vec<Finding>, sources: Sources, tree: Option<&Node>) -> Self {
+    /// Works out places from paths and paths from places. `written` gives the place of the value at a path in the merged
+    /// scene, or of the last value on the way to it, and how many steps lead there; nothing when there is no scene yet.
+    pub(crate) fn new(findings: Vec<Finding>, sources: Sources, written: &Written<'_>) -> Self {
         let mut files: Vec<Option<Option<Node>>> = vec![None; sources.len()];
         let mut list: Vec<Problem> = Vec::with_capacity(findings.len());
         for finding in findings {
-            let (place, path) = locate(&finding, &sources, tree, &mut files);
+            let (place, path) = locate(&finding, &sources, written, &mut files);
             let Finding { severity, message, help, .. } = finding;
             list.push(Problem { severity, path, place, message, help });
         }
@@ -157,14 +162,17 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
+/// Where values of a scene were written.
+type Written<'w> = dyn Fn(&Path) -> Option<(Option<Place>, usize)> + 'w;
+
 /// Where a finding is, and its path inside the file that holds it.
 fn locate(
     finding: &Finding,
     sources: &Sources,
-    tree: Option<&Node>,
+    written: &Written<'_>,
     files: &mut [Option<Option<Node>>],
 ) -> (Option<Place>, String) {
-    let found = finding.path.as_ref().zip(tree).map(|(path, tree)| tree.place_of(path));
+    let found = finding.path.as_ref().and_then(written);
     let place = finding.place.or(found.and_then(|(place, _)| place));
     let own_file = sources.len() <= 1;
     let (Some(place), false) = (place, own_file && finding.path.is_some()) else {

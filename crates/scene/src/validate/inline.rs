@@ -23,13 +23,14 @@ impl Walk<'_> {
         Some(name.into())
     }
 
-    /// Adds the textures that were written in place to those of a scene.
-    pub(super) fn add_textures(&mut self, scene: &mut Map<String, Value>) {
+    /// Adds the textures that were written in place to those of a scene, and returns their names.
+    pub(super) fn add_textures(&mut self, scene: &mut Map<String, Value>) -> Vec<(String, Value)> {
         if self.textures.is_empty() {
-            return;
+            return Vec::new();
         }
         let named = scene.entry("textures").or_insert_with(|| Value::Object(Map::new()));
-        let Some(named) = named.as_object_mut() else { return };
+        let Some(named) = named.as_object_mut() else { return Vec::new() };
+        let mut added = Vec::new();
         for (name, texture) in std::mem::take(&mut self.textures) {
             if named.contains_key(&name) {
                 let finding =
@@ -38,7 +39,9 @@ impl Walk<'_> {
                     .push(finding.at(Path::from_pointer(&name)).help("give the texture in `textures` another name"));
                 continue;
             }
+            added.push((name.clone(), Value::Null));
             named.insert(name, texture);
         }
+        added
     }
 }

@@ -4,16 +4,17 @@
 //! written `8.0` become whole. What is wrong is left out, so that the rest can still be checked.
 
 use crate::document::{Node, Value as Written};
-use crate::path::Trail;
+use crate::path::{Path, Step, Trail};
 use crate::report::Finding;
 use crate::schema::Schema;
 use crate::suggest::did_you_mean;
-use rule::Rule;
+use rule::{Rule, RuleId};
 use serde_json::Value;
 
 mod choice;
 mod family;
 mod foreign;
+mod given;
 mod inline;
 mod names;
 mod rule;
@@ -22,7 +23,9 @@ mod structure;
 mod words;
 
 pub use foreign::page as names_page;
+pub(crate) use given::GivenNames;
 pub use names::Family;
+pub(crate) use names::Known;
 pub(crate) use words::{family as definition_family, list, noun as family_noun, plural};
 
 /// Most warnings that are collected.
@@ -31,10 +34,12 @@ const MAX_WARNINGS: usize = 20;
 const MAX_FINDINGS: usize = 200;
 
 /// What a walk brought.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Validated {
     /// The scene as plain JSON, without what is wrong; nothing when hardly anything is right.
     pub json: Option<Value>,
+    /// Textures that were written in place, by the names that they got. Those of a whole scene are in `json` too.
+    pub textures: Vec<(String, Value)>,
     /// All that is wrong.
     pub findings: Vec<Finding>,
     /// What is allowed and probably not meant.
@@ -51,26 +56,51 @@ impl Validated {
 
 /// Checks a scene whose expressions are resolved.
 pub fn validate(tree: &Node) -> Validated {
-    let mut walk = Walk::new(tree);
+    let mut walk = Walk::new(Known::Tree(tree));
     let mut json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
-    if let Some(Value::Object(scene)) = &mut json {
-        walk.add_textures(scene);
+    let textures = match &mut json {
+        Some(Value::Object(scene)) => walk.add_textures(scene),
+        _ => Vec::new(),
+    };
+    Validated { json, textures, findings: walk.findings, warnings: walk.warnings }
+}
+
+/// Checks one item of a scene, or one list of items, whose expressions are resolved. `belongs` is its path in the scene
+/// and `at` where messages say that it stands.
+pub(crate) fn item(node: &Node, belongs: &Path, at: &Trail<'_>, known: Known<'_>) -> Validated {
+    let Some(rule) = rule_of(belongs) else { return Validated::default() };
+    let mut walk = Walk::new(known);
+    let json = walk.value(node, at, rule);
+    let textures = std::mem::take(&mut walk.textures);
+    Validated { json, textures, findings: walk.findings, warnings: walk.warnings }
+}
+
+/// What may stand at the path of an item or of a list of items.
+fn rule_of(path: &Path) -> Option<&'static Rule> {
+    let scene = Rule::root()?;
+    let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
+    let section = (section.as_str(), scene.field(section)?.get());
+    let objects = || scene.field("objects").map(RuleId::get);
+    match (section, rest) {
+        ((_, rule), []) => Some(rule),
+        (("groups", _), [_]) => objects(),
+        (("groups" | "objects", _), _) => objects()?.items.map(RuleId::get),
+        ((_, rule), _) => rule.items.or(rule.others).map(RuleId::get),
     }
-    Validated { json, findings: walk.findings, warnings: walk.warnings }
 }
 
 /// Checks a value that stands at `at` against the definition of this name.
 pub(crate) fn part(node: &Node, definition: &str, at: &Trail<'_>) -> Validated {
     match Rule::named(definition) {
         Some(rule) => by_rule(node, rule, at),
-        None => Validated { json: None, findings: Vec::new(), warnings: Vec::new() },
+        None => Validated::default(),
     }
 }
 
 fn by_rule(node: &Node, rule: &'static Rule, at: &Trail<'_>) -> Validated {
-    let mut walk = Walk::new(node);
+    let mut walk = Walk::new(Known::Tree(node));
     let json = walk.value(node, at, rule);
-    Validated { json, findings: walk.findings, warnings: walk.warnings }
+    Validated { json, textures: Vec::new(), findings: walk.findings, warnings: walk.warnings }
 }
 
 /// What an unknown key of a scene probably means.
@@ -80,8 +110,8 @@ pub(crate) fn meant_in_scene(key: &str) -> Option<String> {
 
 struct Walk<'t> {
     schema: &'static Schema,
-    /// The whole scene, where names are looked up.
-    tree: &'t Node,
+    /// Where names are looked up.
+    known: Known<'t>,
     findings: Vec<Finding>,
     /// Textures that are written in place, by the names that they get.
     textures: Vec<(String, Value)>,
@@ -89,8 +119,8 @@ struct Walk<'t> {
 }
 
 impl<'t> Walk<'t> {
-    fn new(tree: &'t Node) -> Self {
-        Self { schema: Schema::get(), tree, findings: Vec::new(), textures: Vec::new(), warnings: Vec::new() }
+    fn new(known: Known<'t>) -> Self {
+        Self { schema: Schema::get(), known, findings: Vec::new(), textures: Vec::new(), warnings: Vec::new() }
     }
 }
 

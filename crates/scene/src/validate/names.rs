@@ -2,6 +2,7 @@
 
 use super::rule::Rule;
 use super::{Walk, foreign};
+use crate::description::Description;
 use crate::document::Node;
 use crate::path::Trail;
 use crate::report::Finding;
@@ -32,15 +33,49 @@ impl Family {
     }
 }
 
+/// The names of a scene.
+#[derive(Clone, Copy)]
+pub enum Known<'t> {
+    /// Those of a whole scene as a tree.
+    Tree(&'t Node),
+    /// Those of a scene.
+    Scene(&'t Description),
+}
+
+impl<'t> Known<'t> {
+    fn has(self, part: &str, name: &str) -> bool {
+        match self {
+            Self::Tree(tree) => tree.get(part).is_some_and(|part| part.get(name).is_some()),
+            Self::Scene(scene) => match part {
+                "materials" => scene.materials.contains_key(name),
+                "textures" => scene.textures.contains_key(name),
+                "groups" => scene.groups.contains_key(name),
+                _ => scene.cameras.contains_key(name),
+            },
+        }
+    }
+
+    fn all(self, part: &str) -> Vec<&'t str> {
+        match self {
+            Self::Tree(tree) => tree.get(part).into_iter().flat_map(Node::members).map(|(name, _)| &**name).collect(),
+            Self::Scene(scene) => match part {
+                "materials" => scene.materials.keys().map(String::as_str).collect(),
+                "textures" => scene.textures.keys().map(String::as_str).collect(),
+                "groups" => scene.groups.keys().map(String::as_str).collect(),
+                _ => scene.cameras.keys().map(String::as_str).collect(),
+            },
+        }
+    }
+}
+
 impl Walk<'_> {
     /// Reports a name that nothing in the scene has.
     pub(super) fn refer(&mut self, family: Family, node: &Node, name: &str, at: &Trail<'_>) {
         let (part, noun) = family.words();
-        let known = self.tree.get(part);
-        if known.is_some_and(|known| known.get(name).is_some()) {
+        if self.known.has(part, name) {
             return;
         }
-        let names: Vec<&str> = known.into_iter().flat_map(Node::members).map(|(name, _)| name.as_str()).collect();
+        let names = self.known.all(part);
         let near = closest(name, names.iter().copied()).map(did_you_mean);
         let kind = || kind_of_material(name).filter(|_| family == Family::Material);
         let known = || meant_or_all(name, names.iter().copied());

@@ -241,7 +241,8 @@ fn camera_and_followers_share_a_variable() {
         "objects": [{"shape": "sphere", "transform": [{"translate": "=ball"}]},
             {"shape": "cuboid", "transform": [{"look_at": {"from": [5, 0, 2], "to": "=ball"}}]}]}"#;
     let scene = Scene::from_json(text, "a.json").unwrap().at_frame(5.0).unwrap();
-    let json = scene.to_value();
+    assert_eq!(scene.to_value()["camera"]["perspective"]["look_at"], json!("=ball"), "a scene is written as it moves");
+    let json = scene.still().to_value();
     assert_eq!(json["camera"]["perspective"]["look_at"], json!([0, 0, 2]));
     assert_eq!(json["objects"][0]["transform"][0]["translate"], json!([0, 0, 2]));
     let place = scene.description.objects[1].transform[0].transform().unwrap();
@@ -347,7 +348,7 @@ fn paths_of_included_files_belong_to_the_scene() {
             "main.json",
         )
     };
-    assert_eq!(main("").unwrap().to_value()["objects"][0]["transform"][0]["translate"], json!([2, 0, 0]));
+    assert_eq!(main("").unwrap().still().to_value()["objects"][0]["transform"][0]["translate"], json!([2, 0, 0]));
     let twice = main(r#""paths": {"way": {"points": [[0, 0, 0]]}},"#).unwrap_err().to_string();
     assert!(twice.contains("`way` in `paths` has been defined before"), "{twice}");
 }

@@ -27,7 +27,7 @@ fn a_texture_in_place_is_that_texture_under_a_name() {
     let scene = Scene::from_json(scene(marble, ""), "inline.json").unwrap();
     let name = "/materials/wall/phong/diffuse";
     assert_eq!(scene.description.textures[name], serde_json::from_str::<AnyTexture>(marble).unwrap());
-    let AnyMaterial::Phong(wall) = &scene.description.materials["wall"] else { panic!("another material") };
+    let AnyMaterial::Phong(wall) = &*scene.description.materials["wall"] else { panic!("another material") };
     assert_eq!(wall.diffuse, Input::Texture(name.into()));
     assert_eq!(scene.compile().unwrap().warnings.list(), []);
     // Written out, it is one of the scene's textures, and reads as such.

@@ -2,8 +2,9 @@
 //! numbers computed from them by hand.
 
 use juggler_math::{DVec3, Vec3};
-use juggler_scene::Scene;
 use juggler_scene::compile::{Assembly, Files, Library};
+use juggler_scene::document::Sources;
+use juggler_scene::{Scene, Tracks};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::shape::AnyShape;
 use juggler_tracer::world::Object;
@@ -15,7 +16,9 @@ const NEAR: f64 = 2e-4;
 fn spheres(frame: f64) -> Vec<(DVec3, f64)> {
     let scene = Scene::built_in("juggler").unwrap().at_frame(frame).unwrap();
     let library = Library::default();
-    let (assembly, findings) = Assembly::of(&scene.description, &[], Files { origin: None, library: &library });
+    let sources = Sources::default();
+    let files = Files { scene: &scene.description, sources: &sources, library: &library };
+    let (assembly, findings) = Assembly::of(&scene.description, &Tracks::default(), files);
     assert!(findings.is_empty(), "{findings:?}");
     let shape = |object: &Object| object.content.as_shape().unwrap().as_ref().clone();
     let ground = assembly.objects.iter().filter(|object| matches!(shape(object), AnyShape::Plane(_))).count();

@@ -22,5 +22,6 @@ mod juggler;
 mod lighting;
 mod limits;
 mod mutations;
+mod values;
 mod wrong_animations;
 mod wrong_scenes;

@@ -66,10 +66,10 @@ const EXTREMES: [&str; 24] = [
 ];
 
 /// A small generator of numbers that look random (SplitMix64; Steele, Lea, Flood 2014).
-struct Numbers(u64);
+pub struct Numbers(pub u64);
 
 impl Numbers {
-    fn below(&mut self, n: usize) -> usize {
+    pub fn below(&mut self, n: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -132,14 +132,18 @@ fn mutated(numbers: &mut Numbers, seeds: &[Vec<String>]) -> String {
 /// What a broken scene does: a picture's world, or a message.
 fn outcome(text: String) -> Result<(), String> {
     let scene = Scene::from_json(text, "mutated.json").map_err(|error| error.to_string())?;
-    let frames = [scene.at_frame(7.25), Ok(scene)];
-    for scene in frames {
+    let frames = [(7.25, scene.at_frame(7.25)), (0.0, Ok(scene))];
+    for (frame, scene) in frames {
         let scene = scene.map_err(|error| error.to_string())?;
         let compiled = scene.compile().map_err(|error| error.to_string())?;
         assert!(!compiled.cameras.is_empty() && compiled.warnings.errors() == 0);
-        // What compiles can be written, and read again.
-        let written = Scene::from_json(scene.to_json(), "mutated.json").map_err(|error| error.to_string());
-        assert_eq!(written.map(|again| again.fingerprint()), Ok(scene.fingerprint()));
+        // What compiles can be written, and read again: as it moves, and as it stands still.
+        let read = |json: String| Scene::from_json(json, "mutated.json");
+        let again = read(scene.to_json()).and_then(|again| again.at_frame(frame)).map_err(|error| error.to_string());
+        assert_eq!(again.map(|again| again.fingerprint()), Ok(scene.fingerprint()));
+        let still = scene.still();
+        let again = read(still.to_json()).map_err(|error| error.to_string());
+        assert_eq!(again.map(|again| again.fingerprint()), Ok(still.fingerprint()));
     }
     Ok(())
 }

@@ -120,8 +120,8 @@ impl Session {
         // Whether there are any is told with the pictures.
         let header = reel.header([width, height], frames.max(1), animation.frames_per_second);
         reel.check(&header)?;
-        let mut tone = scene.description.tone.clone();
-        self.plan.settings.apply_to(&mut scene.description.render.clone(), &mut tone)?;
+        let mut tone = (*scene.description.tone).clone();
+        self.plan.settings.apply_to(&mut (*scene.description.render).clone(), &mut tone)?;
         if !tone.primaries.is_srgb() {
             let name = tone.primaries.name();
             return Err(Failure::Wrong(format!(

@@ -24,7 +24,7 @@ use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
 use prepared::Prepared;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::sync::Arc;
 
 mod crease;
@@ -33,6 +33,7 @@ mod deforming;
 mod many;
 mod morph;
 mod prepared;
+mod written;
 
 pub use data::MeshData;
 pub use morph::Morph;
@@ -41,7 +42,7 @@ pub use morph::Morph;
 /// counter-clockwise.
 ///
 /// Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the corners of each triangle.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Mesh {
     /// A model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays below.

@@ -1,0 +1,40 @@
+//! Single values of a scene, worked out for one frame: the scene's variables and paths are looked at once, then as many
+//! values as are wanted.
+
+use super::given;
+use super::walk::Walk;
+use crate::document::{Node, Sources, Value};
+use crate::path::Trail;
+use crate::report::Finding;
+use crate::validate;
+
+/// Works out values for one frame.
+pub(crate) struct Resolver<'s> {
+    walk: Walk<'s>,
+}
+
+impl<'s> Resolver<'s> {
+    /// For a frame of the scene whose `animation`, `variables` and `paths` `head` holds. `sources` are the texts that
+    /// they were read from.
+    pub fn new(head: &'s Node, sources: &'s Sources, frame: f64) -> Self {
+        let mut walk = Walk::new(head, sources, given(head, frame));
+        walk.variables();
+        if let Some(paths) = walk.all_paths() {
+            let paths = Node { place: None, value: Value::Object(paths) };
+            let at = Trail::Root.key("paths");
+            let checked = validate::item(&paths, &(&at).into(), &at, validate::Known::Tree(head));
+            checked.findings.into_iter().for_each(|finding| walk.report(finding));
+        }
+        Self { walk }
+    }
+
+    /// The value at the frame; `at` is where messages say that it stands.
+    pub fn value(&mut self, node: &Node, at: &Trail<'_>) -> Node {
+        self.walk.node(node, at).unwrap_or_else(|| node.clone())
+    }
+
+    /// All that was wrong.
+    pub fn finish(self) -> Vec<Finding> {
+        self.walk.findings
+    }
+}

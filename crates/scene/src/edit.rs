@@ -1,0 +1,271 @@
+//! Changing a scene by JSON pointers, by the same checks that texts go through.
+
+use crate::description::{Description, Named, Written, described};
+use crate::document::{Member, Members, Node, Value as Json, put};
+use crate::item::Template;
+use crate::motion::{self, Reader, Wanted};
+use crate::path::{Path, Step, Trail};
+use crate::report::Finding;
+use crate::validate::{self, Known};
+use crate::{Scene, SceneError, animate};
+use serde_json::Value;
+use std::sync::Arc;
+
+/// Sections of a scene that are lists.
+const LISTS: [&str; 2] = ["objects", "lights"];
+/// Sections of a scene that are maps of items.
+const MAPS: [&str; 3] = ["cameras", "textures", "materials"];
+/// Sections of a scene that are one item.
+const SINGLE: [&str; 4] = ["render", "tone", "camera", "background"];
+
+impl Scene {
+    /// The same scene with another value at a place, which is a JSON pointer such as `/materials/red/phong/diffuse`;
+    /// `null` takes away what is there. The value may be an expression or a value form. Objects on the way are made where
+    /// there are none.
+    pub fn with_value(&self, pointer: &str, value: Value) -> Result<Self, SceneError> {
+        let mut scene = self.clone();
+        scene.description = self.settled().into_owned();
+        let found = scene.set(pointer, value);
+        match found {
+            Ok(()) => Ok(scene),
+            Err(findings) => Err(SceneError::Problems(self.report(findings))),
+        }
+    }
+
+    fn set(&mut self, pointer: &str, value: Value) -> Result<(), Vec<Finding>> {
+        let path = Path::from_pointer(pointer);
+        let section = match path.steps().first() {
+            Some(Step::Key(section)) => section.clone(),
+            _ => String::new(),
+        };
+        let mut tree = skeleton(&self.description, &section, &path);
+        put(&mut tree, pointer, value).map_err(|finding| vec![finding])?;
+        let written = tree.get(&section);
+        match section.as_str() {
+            "variables" | "paths" => {
+                let target =
+                    if section == "paths" { &mut self.description.paths } else { &mut self.description.variables };
+                *target = Written::new(written);
+                return self.work_out_again();
+            }
+            _ if is_of_items(&section) => {}
+            _ => return self.set_plain(&section, &tree),
+        }
+        let removes = self.description.remove(&path, &section, written);
+        let Some(written) = written else { return self.check_names(removes) };
+        let wanted = wanted_in(written, &path, &section);
+        self.read_items(&wanted)?;
+        self.check_names(removes)
+    }
+
+    /// Sets what is neither an item nor a list of items.
+    fn set_plain(&mut self, section: &str, tree: &Node) -> Result<(), Vec<Finding>> {
+        let mut findings = Vec::new();
+        let found = described(tree, &mut findings);
+        let Some((found, _)) = found.filter(|_| !findings.iter().any(Finding::is_error)) else { return Err(findings) };
+        let own = &mut self.description;
+        match section {
+            "version" => own.version = found.version,
+            "title" => own.title = found.title,
+            "description" => own.description = found.description,
+            "animation" => own.animation = found.animation,
+            "background_light_group" => own.background_light_group = found.background_light_group,
+            _ => {}
+        }
+        if section == "animation" { self.work_out_again() } else { Ok(()) }
+    }
+
+    /// Works out all that depends on variables, paths or time again.
+    fn work_out_again(&mut self) -> Result<(), Vec<Finding>> {
+        self.check_paths()?;
+        let wanted = self.description.worked_out(|_| true);
+        let parts = self.read_parts(&wanted)?;
+        parts.into_iter().for_each(|(path, part)| self.description.put(&path, part));
+        let head = motion::head(&self.description);
+        self.description.time_again(&head);
+        Ok(())
+    }
+
+    fn check_paths(&self) -> Result<(), Vec<Finding>> {
+        let head = motion::head(&self.description);
+        let (resolved, mut findings) = animate::resolve(&head, self.sources(), self.frame);
+        let at = Trail::Root.key("paths");
+        let paths = resolved.get("paths");
+        findings.extend(
+            paths.into_iter().flat_map(|paths| {
+                validate::item(paths, &Path::from(&at), &at, Known::Scene(&self.description)).findings
+            }),
+        );
+        if findings.iter().any(Finding::is_error) { Err(findings) } else { Ok(()) }
+    }
+
+    /// Reads items that were written anew, and puts them where they belong.
+    fn read_items(&mut self, wanted: &[Wanted]) -> Result<(), Vec<Finding>> {
+        let parts = self.read_parts(wanted)?;
+        let in_place: Vec<String> = parts.iter().filter_map(|(path, part)| part.name_in_place(path)).collect();
+        parts.into_iter().for_each(|(path, part)| self.description.put(&path, part));
+        let head = motion::head(&self.description);
+        motion::attach_items(&mut self.description, &head, wanted, &in_place);
+        Ok(())
+    }
+
+    fn read_parts(&self, wanted: &[Wanted]) -> Result<Vec<(Path, motion::Part)>, Vec<Finding>> {
+        let head = motion::head(&self.description);
+        let mut reader = Reader::new(&head, self.sources(), self.frame, Known::Scene(&self.description));
+        wanted.iter().for_each(|wanted| reader.add(wanted));
+        let (parts, findings) = reader.finish();
+        parts.ok_or(findings)
+    }
+
+    /// Where names were taken away, whether something still uses them.
+    fn check_names(&self, removes: bool) -> Result<(), Vec<Finding>> {
+        let findings = if removes { self.description.item_findings(|_| true) } else { Vec::new() };
+        if findings.iter().any(Finding::is_error) { Err(findings) } else { Ok(()) }
+    }
+}
+
+fn is_of_items(section: &str) -> bool {
+    LISTS.contains(&section) || MAPS.contains(&section) || SINGLE.contains(&section) || section == "groups"
+}
+
+/// A scene of which only that is written which a change at a path can reach; other elements of lists are null.
+fn skeleton(scene: &Description, section: &str, path: &Path) -> Node {
+    let steps = path.steps().get(1..).unwrap_or_default();
+    let at = |steps: &[Step]| match steps.first() {
+        Some(Step::Index(i)) => Some(*i),
+        _ => None,
+    };
+    let name = match steps.first() {
+        Some(Step::Key(name)) => name.as_str(),
+        _ => "",
+    };
+    let item = |path: &Path| scene.item_of(path).map(|(item, _)| motion::node(item));
+    let form = scene.list_forms.iter().find(|form| path.steps().starts_with(form.path.steps()));
+    let content = match section {
+        _ if form.is_some_and(|form| form.path.steps().len() == 1) => form.map(|form| form.template.node.clone()),
+        "objects" => Some(list(scene.objects.iter().map(motion::object_node), scene.objects.len(), at(steps))),
+        "lights" => Some(list(scene.lights.iter().map(|light| motion::node(light)), scene.lights.len(), at(steps))),
+        "groups" => {
+            let rest = steps.get(1..).unwrap_or_default();
+            let objects = scene.groups.get(name).map(|objects| match form {
+                Some(form) => form.template.node.clone(),
+                None => list(objects.iter().map(motion::object_node), objects.len(), at(rest)),
+            });
+            Some(map(name, objects))
+        }
+        _ if MAPS.contains(&section) => Some(map(name, item(&Path::root().key(section).key(name)))),
+        _ if SINGLE.contains(&section) => item(&Path::root().key(section)),
+        "variables" => scene.variables.node().cloned(),
+        "paths" => scene.paths.node().cloned(),
+        "animation" => Some(serde_json::to_value(scene.animation).unwrap_or_default().into()),
+        _ => None,
+    };
+    let version = Some(Node::from(Value::from(scene.version)));
+    object([("version", version.filter(|_| section != "version")), (section, content)])
+}
+
+fn object<'k>(members: impl IntoIterator<Item = (&'k str, Option<Node>)>) -> Node {
+    let member = |(key, node): (&str, Option<Node>)| Some((key.to_owned(), Member { key_place: None, node: node? }));
+    let members: Members = members.into_iter().filter_map(member).collect();
+    Node { place: None, value: Json::Object(Arc::new(members)) }
+}
+
+fn map(name: &str, node: Option<Node>) -> Node {
+    object([(name, node)])
+}
+
+/// A list of which only the element `at` is written; all where there is no such.
+fn list(mut nodes: impl Iterator<Item = Node>, count: usize, at: Option<usize>) -> Node {
+    let null = || Node { place: None, value: Json::Null };
+    let elements = match at {
+        None => nodes.collect(),
+        Some(at) => {
+            let mut elements: Vec<Node> = (0..count).map(|_| null()).collect();
+            if let (Some(element), Some(node)) = (elements.get_mut(at), nodes.nth(at)) {
+                *element = node;
+            }
+            elements
+        }
+    };
+    Node { place: None, value: Json::Array(Arc::new(elements)) }
+}
+
+/// What is to be read of a section that was written anew as far as `path` can reach.
+fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<Wanted> {
+    let root = Path::root().key(key);
+    let mut wanted = Vec::new();
+    let mut want = |path: Path, node: &Node| {
+        let template = Arc::new(Template { node: node.clone(), depends_on_time: true });
+        wanted.push(Wanted { path, template, moves: false, place: node.place });
+    };
+    let is_list = |node: &Node| matches!(node.value, Json::Array(_));
+    let mut each = |root: &Path, list: &Node, step: Option<&Step>| match step {
+        _ if !is_list(list) => want(root.clone(), list),
+        Some(Step::Index(i)) => {
+            // Null are the others, and what the change has taken away.
+            let element = list.elements().get(*i).filter(|node| !matches!(node.value, Json::Null));
+            element.into_iter().for_each(|node| want(root.index(*i), node));
+        }
+        _ => list.elements().iter().enumerate().for_each(|(i, node)| want(root.index(i), node)),
+    };
+    let steps = path.steps();
+    match key {
+        _ if LISTS.contains(&key) => each(&root, section, steps.get(1)),
+        "groups" => section.members().for_each(|(name, member)| each(&root.key(name), &member.node, steps.get(2))),
+        _ if MAPS.contains(&key) => section.members().for_each(|(name, member)| want(root.key(name), &member.node)),
+        _ => want(root, section),
+    }
+    wanted
+}
+
+impl Description {
+    /// Takes away what a change at a path has taken away or will write anew; `written` is what is left of the section.
+    /// Whether names may be missing now.
+    fn remove(&mut self, path: &Path, section: &str, written: Option<&Node>) -> bool {
+        let steps = path.steps();
+        self.list_forms.retain(|form| !path.steps().starts_with(form.path.steps()));
+        let whole = steps.len() == 1;
+        let name = if let Some(Step::Key(name)) = steps.get(1) { name.as_str() } else { "" };
+        let is_gone = written.is_none_or(|section| section.get(name).is_none());
+        let count = written.map_or(0, |section| section.elements().len());
+        let at = |step: Option<&Step>| if let Some(Step::Index(i)) = step { Some(*i) } else { None };
+        match section {
+            "camera" if written.is_none() => self.camera = None,
+            "background" if written.is_none() => self.background = None,
+            "render" if written.is_none() => self.render = Default::default(),
+            "tone" if written.is_none() => self.tone = Default::default(),
+            "cameras" if whole || is_gone => take(&mut self.cameras, (!whole).then_some(name)),
+            "textures" if whole || is_gone => take(&mut self.textures, (!whole).then_some(name)),
+            "materials" if whole || is_gone => take(&mut self.materials, (!whole).then_some(name)),
+            "objects" => shorten(&mut self.objects, at(steps.get(1)), whole, count),
+            "lights" => shorten(&mut self.lights, at(steps.get(1)), whole, count),
+            "groups" if whole => self.groups.clear(),
+            "groups" if is_gone => drop(self.groups.shift_remove(name)),
+            "groups" => {
+                let objects = self.groups.entry(name.to_owned()).or_default();
+                let count = written.and_then(|section| section.get(name)).map_or(0, |list| list.elements().len());
+                shorten(objects, at(steps.get(2)), steps.len() == 2, count);
+            }
+            _ => {}
+        }
+        let is_map = section == "groups" || MAPS.contains(&section);
+        is_map && (whole || is_gone)
+    }
+}
+
+/// Takes away the item of a name; all of them without a name.
+fn take<T: Clone>(map: &mut Named<T>, name: Option<&str>) {
+    match name {
+        None => map.clear(),
+        Some(name) => drop(map.shift_remove(name)),
+    }
+}
+
+/// Makes a list as long as it is now, where an element was taken away.
+fn shorten<T: Clone>(list: &mut crate::Shared<Vec<T>>, at: Option<usize>, whole: bool, count: usize) {
+    match at {
+        _ if whole => list.clear(),
+        Some(at) if count < list.len() && at < list.len() => drop(list.remove(at)),
+        _ => {}
+    }
+}

@@ -1,0 +1,186 @@
+//! Items: the objects, lights, materials, textures, cameras and settings that a scene is made of, each with what
+//! the scene knows of it beside its value: how it moves, where it was written, whether it has been checked.
+
+use crate::document::{Node, Place};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
+
+/// One item of a scene: a value at the scene's frame, shared by the scene's copies until it is changed.
+///
+/// An item reads and writes as its value: `scene.description.objects[0].visible`. Two items are equal when their values
+/// are.
+pub struct Item<T>(Arc<Inner<T>>);
+
+#[derive(Clone)]
+struct Inner<T> {
+    value: T,
+    /// How it moves; nothing for an item that is the same at all frames.
+    template: Option<Arc<Template>>,
+    /// Where it was written.
+    place: Option<Place>,
+    state: State,
+}
+
+/// What is known of an item's value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// It fits the schema, and is what its template gives at the scene's frame.
+    Checked,
+    /// It was made or changed by a program.
+    Changed,
+}
+
+/// How an item moves: its JSON with expressions and value forms in place of values.
+#[derive(Debug)]
+pub(crate) struct Template {
+    /// The JSON.
+    pub node: Node,
+    /// Whether it changes from frame to frame; otherwise with variables and paths alone.
+    pub depends_on_time: bool,
+}
+
+impl<T> Item<T> {
+    /// A value as it was read from a text and checked.
+    pub(crate) fn read(value: T, place: Option<Place>, template: Option<Arc<Template>>) -> Self {
+        Self(Arc::new(Inner { value, template, place, state: State::Checked }))
+    }
+
+    /// Learns that the value was read from a text and checked, where it stands there, and how it moves.
+    pub(crate) fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>)
+    where
+        T: Clone,
+    {
+        let inner = Arc::make_mut(&mut self.0);
+        (inner.place, inner.template, inner.state) = (place, template, State::Checked);
+    }
+
+    /// Sets how it moves.
+    pub(crate) fn set_template(&mut self, template: Option<Arc<Template>>)
+    where
+        T: Clone,
+    {
+        Arc::make_mut(&mut self.0).template = template;
+    }
+
+    /// Whether both are the very same item in memory.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+
+    /// How it moves. Of an item that a program has changed since, this is how it moved before.
+    pub(crate) fn template(&self) -> Option<&Arc<Template>> {
+        self.0.template.as_ref()
+    }
+
+    /// Where it was written.
+    pub(crate) fn place(&self) -> Option<Place> {
+        self.0.place
+    }
+
+    /// Whether a program has made or changed it since the scene was read.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.0.state == State::Changed
+    }
+
+    /// The value, for changes that leave it checked.
+    pub(crate) fn quietly(&mut self) -> &mut T
+    where
+        T: Clone,
+    {
+        &mut Arc::make_mut(&mut self.0).value
+    }
+
+    /// The value.
+    pub fn into_inner(self) -> T
+    where
+        T: Clone,
+    {
+        Arc::try_unwrap(self.0).map_or_else(|shared| shared.value.clone(), |inner| inner.value)
+    }
+}
+
+impl<T> Clone for Item<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T> From<T> for Item<T> {
+    fn from(value: T) -> Self {
+        Self(Arc::new(Inner { value, template: None, place: None, state: State::Changed }))
+    }
+}
+
+impl<T: Default> Default for Item<T> {
+    fn default() -> Self {
+        Self::from(T::default())
+    }
+}
+
+impl<T> Deref for Item<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.0.value
+    }
+}
+
+impl<T: Clone> DerefMut for Item<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        let inner = Arc::make_mut(&mut self.0);
+        inner.state = State::Changed;
+        &mut inner.value
+    }
+}
+
+impl<T: PartialEq> PartialEq for Item<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.is_same(other) || self.0.value == other.0.value
+    }
+}
+
+impl<T: PartialEq> PartialEq<T> for Item<T> {
+    fn eq(&self, other: &T) -> bool {
+        self.0.value == *other
+    }
+}
+
+impl<T: fmt::Debug> fmt::Debug for Item<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.value.fmt(f)
+    }
+}
+
+impl<T: Serialize> Serialize for Item<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.value.serialize(serializer)
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Item<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::deserialize(deserializer).map(Self::from)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Item<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn schema_id() -> Cow<'static, str> {
+        T::schema_id()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}

@@ -1,0 +1,207 @@
+//! A scene that was read from a text learns of its items where they were written and how they move.
+
+use super::{AnyItem, Given, ListForm, Wanted, inside, with_trail};
+use crate::animate::{Changing, is_worked_out};
+use crate::description::{Description, Named, Objects, Written};
+use crate::document::{Node, Value};
+use crate::item::{Item, Template};
+use crate::path::{Path, Step, Trail};
+use crate::{Object, animate};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Bound;
+use std::sync::Arc;
+
+/// Gives the items of a scene their places and templates. `tree` is what the scene was read from, its expressions not
+/// worked out; `in_place` are the names of textures that were written in place.
+pub(crate) fn attach(scene: &mut Description, tree: &Node, in_place: &[String]) {
+    scene.variables = Written::new(tree.get("variables"));
+    scene.paths = Written::new(tree.get("paths"));
+    let names = in_place.iter().map(String::as_str).collect();
+    let mut attaching = Attaching { changing: Changing::of(tree), names, taken: BTreeMap::new() };
+    attaching.scene(scene, tree);
+}
+
+/// The same for items that were read anew: `head` holds the scene's variables and paths, `in_place` are the names of
+/// textures that were written in place in these items.
+pub(crate) fn attach_items(scene: &mut Description, head: &Node, wanted: &[Wanted], in_place: &[String]) {
+    let names = in_place.iter().map(String::as_str).collect();
+    let mut attaching = Attaching { changing: Changing::of(head), names, taken: BTreeMap::new() };
+    for Wanted { path, template, .. } in wanted {
+        with_trail(path.steps(), &Trail::Root, &mut |at| attaching.at(scene, path, &template.node, at));
+    }
+    for name in in_place {
+        let path = Path::from_pointer(name);
+        let outer = wanted.iter().find(|wanted| path.steps().starts_with(wanted.path.steps()));
+        let rest = outer.and_then(|outer| path.steps().get(outer.path.steps().len()..));
+        let inside = outer.zip(rest).and_then(|(outer, rest)| inside(&outer.template.node, rest)).cloned();
+        let node = attaching.taken.get(name.as_str()).cloned().or(inside);
+        if let (Some(node), Some(texture)) = (node, scene.textures.get_mut(name)) {
+            scene.form_textures.remove(name);
+            attaching.item(texture, Some(&node), &Trail::Root.key("textures").key(name));
+        }
+    }
+}
+
+struct Attaching<'t> {
+    changing: Changing<'t>,
+    /// Names of textures that were written in place.
+    names: BTreeSet<&'t str>,
+    /// Those that were taken out of templates, which name them now.
+    taken: BTreeMap<&'t str, Node>,
+}
+
+impl Attaching<'_> {
+    fn scene(&mut self, scene: &mut Description, tree: &Node) {
+        let root = Trail::Root;
+        let part = |key: &str| tree.get(key);
+        self.item(&mut scene.render, part("render"), &root.key("render"));
+        self.item(&mut scene.tone, part("tone"), &root.key("tone"));
+        if let Some(camera) = &mut scene.camera {
+            self.item(camera, part("camera"), &root.key("camera"));
+        }
+        if let Some(background) = &mut scene.background {
+            self.item(background, part("background"), &root.key("background"));
+        }
+        self.named(&mut scene.cameras, part("cameras"), &root.key("cameras"));
+        self.named(&mut scene.materials, part("materials"), &root.key("materials"));
+        let at = root.key("groups");
+        for (name, objects) in scene.groups.iter_mut() {
+            self.objects(objects, part("groups").and_then(|groups| groups.get(name)), &at.key(name));
+        }
+        let lights = part("lights").map(Node::elements).unwrap_or_default();
+        let at = root.key("lights");
+        for (i, light) in scene.lights.iter_mut().enumerate() {
+            self.item(light, lights.get(i), &at.index(i));
+        }
+        self.objects(&mut scene.objects, part("objects"), &root.key("objects"));
+        self.textures(scene, tree);
+        self.list_forms(scene, tree);
+    }
+
+    fn item(&mut self, item: &mut dyn AnyItem, node: Option<&Node>, at: &Trail<'_>) {
+        let template = node.and_then(|node| self.template(node, at));
+        item.learn(node.and_then(|node| node.place), template);
+    }
+
+    /// The item or list at a path, which was written like that.
+    fn at(&mut self, scene: &mut Description, path: &Path, node: &Node, at: &Trail<'_>) {
+        if let Some((objects, i)) = scene.list_mut(path) {
+            objects.get_mut(i).into_iter().for_each(|object| self.object(object, Some(node), at));
+        } else if let Some(item) = scene.item_mut(path) {
+            self.item(item, Some(node), at);
+        } else {
+            self.list_form(scene, path.clone(), node);
+        }
+    }
+
+    fn named<T: Serialize + Clone>(&mut self, map: &mut Named<T>, node: Option<&Node>, at: &Trail<'_>) {
+        for (name, item) in map.iter_mut() {
+            self.item(item, node.and_then(|node| node.get(name)), &at.key(name));
+        }
+    }
+
+    fn objects(&mut self, objects: &mut Objects, node: Option<&Node>, at: &Trail<'_>) {
+        let nodes = node.map(Node::elements).unwrap_or_default();
+        for (i, object) in objects.iter_mut().enumerate() {
+            self.object(object, nodes.get(i), &at.index(i));
+        }
+    }
+
+    /// An object that moves by itself has a template with all that it holds; else those within it may have some.
+    fn object(&mut self, object: &mut Item<Object>, node: Option<&Node>, at: &Trail<'_>) {
+        let own = |node: &Node| match &node.value {
+            Value::Object(members) if !animate::is_form(members) => members.iter().any(|(key, member)| {
+                let is_list = key == "objects" && matches!(member.node.value, Value::Array(_));
+                !is_list && is_worked_out(&member.node)
+            }),
+            _ => is_worked_out(node),
+        };
+        let moves = node.is_some_and(own);
+        if let Some(inner) = &mut object.quietly().objects {
+            let node = node.and_then(|node| node.get("objects")).filter(|_| !moves);
+            self.objects(inner, node, &at.key("objects"));
+        }
+        match moves {
+            true => self.item(object, node, at),
+            false => object.learn(node.and_then(|node| node.place), None),
+        }
+    }
+
+    /// How an item moves that was written like that; nothing for one that does not.
+    fn template(&mut self, node: &Node, at: &Trail<'_>) -> Option<Arc<Template>> {
+        if !is_worked_out(node) {
+            return None;
+        }
+        let mut node = node.clone();
+        let own = Path::from(at);
+        let pointer = own.pointer() + "/";
+        let from = (Bound::Included(pointer.as_str()), Bound::Unbounded);
+        let inside = self.names.range::<str, _>(from).take_while(|name| name.starts_with(&pointer));
+        let mut names: Vec<&str> = inside.copied().collect();
+        // Textures within textures come first.
+        names.sort_by_key(|name| std::cmp::Reverse(name.len()));
+        for name in names {
+            let path = Path::from_pointer(name);
+            let rest = path.steps().get(own.steps().len()..).unwrap_or_default();
+            self.taken.extend(take_texture(&mut node, rest, name).map(|texture| (name, texture)));
+        }
+        let depends_on_time = self.changing.holds(&node);
+        is_worked_out(&node).then(|| Arc::new(Template { node, depends_on_time }))
+    }
+
+    /// Textures stand among the scene's, or where they are used.
+    fn textures(&mut self, scene: &mut Description, tree: &Node) {
+        let at = Trail::Root.key("textures");
+        for (name, texture) in scene.textures.iter_mut() {
+            let named = tree.get("textures").and_then(|textures| textures.get(name));
+            let taken = self.taken.get(name.as_str()).cloned();
+            let in_place = || inside(tree, Path::from_pointer(name).steps()).filter(|_| name.starts_with('/')).cloned();
+            let node = taken.or_else(|| named.cloned()).or_else(in_place);
+            if node.is_none() {
+                scene.form_textures.insert(name.clone());
+            }
+            self.item(texture, node.as_ref(), &at.key(name));
+        }
+    }
+
+    fn list_forms(&mut self, scene: &mut Description, tree: &Node) {
+        let groups = tree.get("groups").into_iter().flat_map(Node::members);
+        let groups = groups.map(|(name, member)| (Path::root().key("groups").key(name), &member.node));
+        let single = ["objects", "lights", "background_light_group"];
+        let single = single.iter().filter_map(|key| Some((Path::root().key(*key), tree.get(key)?)));
+        groups.chain(single).for_each(|(path, node)| self.list_form(scene, path, node));
+    }
+
+    fn list_form(&mut self, scene: &mut Description, path: Path, node: &Node) {
+        if matches!(node.value, Value::Array(_)) || !is_worked_out(node) {
+            return;
+        }
+        let given = match path.steps() {
+            [_, Step::Key(group)] => scene.groups.get(group).cloned().map(Given::Objects),
+            [Step::Key(key)] if key == "objects" => Some(Given::Objects(scene.objects.clone())),
+            [Step::Key(key)] if key == "lights" => Some(Given::Lights(scene.lights.clone())),
+            _ => scene.background_light_group.clone().map(Given::Label),
+        };
+        let template = Template { node: node.clone(), depends_on_time: self.changing.holds(node) };
+        scene.list_forms.extend(given.map(|given| ListForm { path, template: Arc::new(template), given }));
+    }
+}
+
+/// Puts the name of a texture in place of the texture at the end of some steps, and returns the texture; nothing where a
+/// value form gives the texture.
+fn take_texture(node: &mut Node, steps: &[Step], name: &str) -> Option<Node> {
+    let Some((step, rest)) = steps.split_first() else {
+        let is_texture = matches!(&node.value, Value::Object(members) if !animate::is_form(members));
+        let named = Node { place: node.place, value: Value::String(name.to_owned()) };
+        return is_texture.then(|| std::mem::replace(node, named));
+    };
+    match (&mut node.value, step) {
+        (Value::Object(members), _) if animate::is_form(members) => None,
+        (Value::Object(members), Step::Key(key)) => {
+            take_texture(&mut Arc::make_mut(members).get_mut(key)?.node, rest, name)
+        }
+        (Value::Array(elements), Step::Index(i)) => take_texture(Arc::make_mut(elements).get_mut(*i)?, rest, name),
+        _ => None,
+    }
+}

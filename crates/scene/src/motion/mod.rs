@@ -1,0 +1,253 @@
+//! How a scene moves. What moves in an item is written in the item's template: its JSON with expressions and value
+//! forms in place of values. At a frame, the items whose templates depend on time are read anew; all others are shared by
+//! the scenes of all frames.
+//!
+//! 1. [`attach`]: a scene that was read from a text gives its items their templates and places.
+//! 2. [`settle`]: where a program has changed an item that moves, the change joins the template.
+//! 3. [`read`]: templates become items at a frame.
+//! 4. [`tracks`]: the same at even times while the shutter is open, for what moves meanwhile.
+//! 5. [`write`](mod@write): a scene as JSON, with everything that moves.
+
+mod attach;
+mod read;
+mod settle;
+mod tracks;
+mod write;
+
+pub(crate) use attach::{attach, attach_items};
+pub(crate) use read::{Part, Reader, Wanted};
+pub(crate) use settle::settled;
+pub use tracks::{ListTracks, ObjectTrack, Tracks};
+pub(crate) use write::{head, node, object_node, written};
+
+use crate::description::{Description, Objects};
+use crate::document::{Node, Place};
+use crate::item::{Item, Template};
+use crate::path::{Path, Step, Trail};
+use crate::shared::Shared;
+use juggler_tracer::light::AnyLight;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// A value that is no item, and is written as one value form: a list of objects or lights, a name.
+#[derive(Clone, Debug)]
+pub(crate) struct ListForm {
+    /// Where it stands: `objects`, `lights`, `groups.NAME`, `background_light_group`.
+    pub path: Path,
+    /// The form.
+    pub template: Arc<Template>,
+    /// What it gave at the scene's frame. A value that is another one now was changed by a program, and stays.
+    pub given: Given,
+}
+
+/// What a form gave.
+#[derive(Clone, Debug)]
+pub(crate) enum Given {
+    /// Objects.
+    Objects(Objects),
+    /// Lights.
+    Lights(Shared<Vec<Item<AnyLight>>>),
+    /// The name of a group of lights.
+    Label(String),
+}
+
+impl PartialEq for ListForm {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path && self.template.node.to_json() == other.template.node.to_json()
+    }
+}
+
+/// An item of any kind.
+pub(crate) trait AnyItem {
+    /// As [`Item::template`].
+    fn template(&self) -> Option<&Arc<Template>>;
+    /// As [`Item::place`].
+    fn place(&self) -> Option<Place>;
+    /// As [`Item::is_changed`].
+    fn is_changed(&self) -> bool;
+    /// Its value as JSON.
+    fn json(&self) -> serde_json::Value;
+    /// As [`Item::learn`].
+    fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>);
+    /// As [`Item::set_template`].
+    fn set_template(&mut self, template: Option<Arc<Template>>);
+}
+
+impl<T: Serialize + Clone> AnyItem for Item<T> {
+    fn template(&self) -> Option<&Arc<Template>> {
+        self.template()
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.place()
+    }
+
+    fn is_changed(&self) -> bool {
+        self.is_changed()
+    }
+
+    fn json(&self) -> serde_json::Value {
+        serde_json::to_value(&**self).unwrap_or_default()
+    }
+
+    fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>) {
+        self.learn(place, template);
+    }
+
+    fn set_template(&mut self, template: Option<Arc<Template>>) {
+        self.set_template(template);
+    }
+}
+
+impl Description {
+    /// Visits every item with its path, objects after those within them.
+    pub(crate) fn each_item(&self, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
+        let root = Trail::Root;
+        visit(&root.key("render"), &self.render);
+        visit(&root.key("tone"), &self.tone);
+        self.camera.iter().for_each(|camera| visit(&root.key("camera"), camera));
+        self.background.iter().for_each(|background| visit(&root.key("background"), background));
+        let at = root.key("cameras");
+        self.cameras.iter().for_each(|(name, camera)| visit(&at.key(name), camera));
+        let at = root.key("textures");
+        self.textures.iter().for_each(|(name, texture)| visit(&at.key(name), texture));
+        let at = root.key("materials");
+        self.materials.iter().for_each(|(name, material)| visit(&at.key(name), material));
+        let at = root.key("groups");
+        self.groups.iter().for_each(|(name, objects)| each_object(objects, &at.key(name), visit));
+        let at = root.key("lights");
+        self.lights.iter().enumerate().for_each(|(i, light)| visit(&at.index(i), light));
+        each_object(&self.objects, &root.key("objects"), visit);
+    }
+
+    /// The item that holds the value at a path, and how many steps of the path lead to the item.
+    pub(crate) fn item_of(&self, path: &Path) -> Option<(&dyn AnyItem, usize)> {
+        fn any<T: Serialize + Clone>(item: &Item<T>) -> &dyn AnyItem {
+            item
+        }
+        let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
+        match (section.as_str(), rest) {
+            ("render", _) => Some((&self.render, 1)),
+            ("tone", _) => Some((&self.tone, 1)),
+            ("camera", _) => Some((any(self.camera.as_ref()?), 1)),
+            ("background", _) => Some((any(self.background.as_ref()?), 1)),
+            ("cameras", [Step::Key(name), ..]) => Some((any(self.cameras.get(name)?), 2)),
+            ("textures", [Step::Key(name), ..]) => Some((any(self.textures.get(name)?), 2)),
+            ("materials", [Step::Key(name), ..]) => Some((any(self.materials.get(name)?), 2)),
+            ("lights", [Step::Index(i), ..]) => Some((any(self.lights.get(*i)?), 2)),
+            ("objects", rest) => object_of(&self.objects, rest, 1),
+            ("groups", [Step::Key(name), rest @ ..]) => object_of(self.groups.get(name)?, rest, 2),
+            _ => None,
+        }
+    }
+
+    /// The item at a path, for what the scene knows of it beside its value.
+    pub(crate) fn item_mut(&mut self, path: &Path) -> Option<&mut dyn AnyItem> {
+        fn any<T: Serialize + Clone>(item: Option<&mut Item<T>>) -> Option<&mut dyn AnyItem> {
+            Some(item?)
+        }
+        let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
+        match (section.as_str(), rest) {
+            ("render", []) => Some(&mut self.render),
+            ("tone", []) => Some(&mut self.tone),
+            ("camera", []) => any(self.camera.as_mut()),
+            ("background", []) => any(self.background.as_mut()),
+            ("cameras", [Step::Key(name)]) => any(self.cameras.get_mut(name)),
+            ("textures", [Step::Key(name)]) => any(self.textures.get_mut(name)),
+            ("materials", [Step::Key(name)]) => any(self.materials.get_mut(name)),
+            ("lights", [Step::Index(i)]) => any(self.lights.get_mut(*i)),
+            _ => {
+                let (objects, i) = self.list_mut(path)?;
+                any(objects.get_mut(i))
+            }
+        }
+    }
+
+    /// The list that holds the object at a path, and the object's number in it.
+    pub(crate) fn list_mut(&mut self, path: &Path) -> Option<(&mut Objects, usize)> {
+        match path.steps() {
+            [Step::Key(section), rest @ ..] if section == "objects" => list_among(&mut self.objects, rest),
+            [Step::Key(section), Step::Key(name), rest @ ..] if section == "groups" => {
+                list_among(self.groups.get_mut(name)?, rest)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether all that may move is the very same in both, in memory, and the shutter opens and closes at the same times.
+    pub(crate) fn moves_as(&self, other: &Self) -> bool {
+        fn same<T>(a: Option<&Item<T>>, b: Option<&Item<T>>) -> bool {
+            match (a, b) {
+                (Some(a), Some(b)) => a.is_same(b),
+                (None, None) => true,
+                _ => false,
+            }
+        }
+        self.render.shutter == other.render.shutter
+            && same(self.camera.as_ref(), other.camera.as_ref())
+            && self.cameras.is_same(&other.cameras)
+            && self.textures.is_same(&other.textures)
+            && self.materials.is_same(&other.materials)
+            && self.groups.is_same(&other.groups)
+            && self.lights.is_same(&other.lights)
+            && self.objects.is_same(&other.objects)
+            && self.list_forms.is_same(&other.list_forms)
+            && self.variables.is_same(&other.variables)
+            && self.paths.is_same(&other.paths)
+            && self.animation == other.animation
+    }
+}
+
+fn each_object(objects: &[Item<crate::Object>], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
+    for (i, object) in objects.iter().enumerate() {
+        let at = at.index(i);
+        if let Some(inner) = &object.objects {
+            each_object(inner, &at.key("objects"), visit);
+        }
+        visit(&at, object);
+    }
+}
+
+fn list_among<'s>(objects: &'s mut Objects, steps: &[Step]) -> Option<(&'s mut Objects, usize)> {
+    match steps {
+        [Step::Index(i)] => Some((objects, *i)),
+        [Step::Index(i), Step::Key(_), rest @ ..] => list_among(objects.get_mut(*i)?.quietly().objects.as_mut()?, rest),
+        _ => None,
+    }
+}
+
+fn object_of<'s>(objects: &'s [Item<crate::Object>], steps: &[Step], depth: usize) -> Option<(&'s dyn AnyItem, usize)> {
+    let [Step::Index(i), rest @ ..] = steps else { return None };
+    let object = objects.get(*i)?;
+    let inner = match rest {
+        [Step::Key(key), rest @ ..] if key == "objects" => {
+            object.objects.as_ref().and_then(|objects| object_of(objects, rest, depth + 2))
+        }
+        _ => None,
+    };
+    Some(inner.unwrap_or((object, depth + 1)))
+}
+
+/// Calls `visit` with a path as the walks over a scene take it.
+pub(crate) fn with_trail<R>(steps: &[Step], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>) -> R) -> R {
+    match steps.split_first() {
+        None => visit(at),
+        Some((Step::Key(key), rest)) => with_trail(rest, &at.key(key), visit),
+        Some((Step::Index(i), rest)) => with_trail(rest, &at.index(*i), visit),
+    }
+}
+
+/// The node at the end of some steps; nothing where a value form stands in the way.
+pub(crate) fn inside<'n>(node: &'n Node, steps: &[Step]) -> Option<&'n Node> {
+    use crate::document::Value;
+    let Some((step, rest)) = steps.split_first() else { return Some(node) };
+    let next = match (&node.value, step) {
+        (Value::Object(members), _) if crate::animate::is_form(members) => None,
+        (Value::Object(members), Step::Key(key)) => members.get(key).map(|member| &member.node),
+        // What may be an array of one may be that one alone.
+        (Value::Object(_), Step::Index(0)) => return inside(node, rest),
+        (Value::Array(elements), Step::Index(i)) => elements.get(*i),
+        _ => None,
+    };
+    inside(next?, rest)
+}

@@ -1,0 +1,148 @@
+//! Changes that a program made to items that move join their templates: what the program changed stands still from then
+//! on, what it left alone moves as before.
+
+use super::{Given, Reader, Wanted, write};
+use crate::animate::{Changing, is_form, is_worked_out};
+use crate::description::Description;
+use crate::document::{Node, Sources, Value};
+use crate::item::Template;
+use crate::path::{Path, Step};
+use crate::validate::Known;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// The scene with templates that hold all changes which programs have made; the scene itself where there are none.
+pub(crate) fn settled<'s>(scene: &'s Description, sources: &Sources, frame: f64) -> Cow<'s, Description> {
+    let mut changed: Vec<(Path, Arc<Template>, serde_json::Value)> = Vec::new();
+    scene.each_item(&mut |at, item| {
+        if let Some(template) = item.template().filter(|_| item.is_changed()) {
+            changed.push((at.into(), Arc::clone(template), item.json()));
+        }
+    });
+    let stale = scene.list_forms.iter().any(|form| !holds(scene, &form.path, &form.given));
+    if changed.is_empty() && !stale {
+        return Cow::Borrowed(scene);
+    }
+    let mut settled = scene.clone();
+    let head = write::head(scene);
+    let mut changing = Changing::of(&head);
+    for (path, template, after) in changed {
+        let merged = before(scene, &head, sources, frame, &path, &template)
+            .map(|before| merged(&template.node, &before, &after))
+            .filter(is_worked_out);
+        let template = merged.map(|node| Arc::new(Template { depends_on_time: changing.holds(&node), node }));
+        if let Some(item) = settled.item_mut(&path) {
+            item.set_template(template);
+        }
+    }
+    settled.list_forms.retain(|form| holds(scene, &form.path, &form.given));
+    Cow::Owned(settled)
+}
+
+/// The item's JSON before it was changed; nothing when the template does not give any more what it gave.
+fn before(
+    scene: &Description,
+    head: &Node,
+    sources: &Sources,
+    frame: f64,
+    path: &Path,
+    template: &Arc<Template>,
+) -> Option<serde_json::Value> {
+    let wanted = Wanted { path: path.clone(), template: Arc::clone(template), moves: true, place: None };
+    let mut reader = Reader::new(head, sources, frame, Known::Scene(scene));
+    reader.add(&wanted);
+    let (_, part) = reader.finish().0?.into_iter().next()?;
+    Some(part.json())
+}
+
+/// What a program made of an item, with all that moves in the item and that the program has left as it was.
+fn merged(template: &Node, before: &serde_json::Value, after: &serde_json::Value) -> Node {
+    let mut moving = Vec::new();
+    sources_in(template, &mut Path::root(), &mut moving);
+    let mut node = Node::from(after.clone());
+    for (path, source) in moving {
+        if value_at(before, path.steps()) == value_at(after, path.steps()) {
+            put(&mut node, path.steps(), source);
+        }
+    }
+    node
+}
+
+/// The outermost expressions and value forms of a template, and where they stand.
+fn sources_in<'n>(node: &'n Node, at: &mut Path, found: &mut Vec<(Path, &'n Node)>) {
+    match &node.value {
+        Value::String(text) if text.starts_with('=') => found.push((at.clone(), node)),
+        Value::Object(members) if is_form(members) => found.push((at.clone(), node)),
+        Value::Object(members) => {
+            for (key, member) in members.iter() {
+                at.push(Step::Key(key.clone()));
+                sources_in(&member.node, at, found);
+                at.pop();
+            }
+        }
+        Value::Array(elements) => {
+            for (i, element) in elements.iter().enumerate() {
+                at.push(Step::Index(i));
+                sources_in(element, at, found);
+                at.pop();
+            }
+        }
+        _ => {}
+    }
+}
+
+/// A value inside JSON as the types write it: there, a single step of a transform stands in an array.
+fn value_at<'j>(json: &'j serde_json::Value, steps: &[Step]) -> Option<&'j serde_json::Value> {
+    let Some((step, rest)) = steps.split_first() else { return Some(json) };
+    match (json, step) {
+        (serde_json::Value::Object(members), Step::Key(key)) => value_at(members.get(key)?, rest),
+        (serde_json::Value::Array(elements), Step::Index(i)) => value_at(elements.get(*i)?, rest),
+        (serde_json::Value::Array(elements), Step::Key(_)) if elements.len() == 1 => value_at(elements.first()?, steps),
+        _ => None,
+    }
+}
+
+/// Puts what moves in its place, if the place is there.
+fn put(node: &mut Node, steps: &[Step], source: &Node) {
+    let Some((step, rest)) = steps.split_first() else {
+        *node = source.clone();
+        return;
+    };
+    match (&mut node.value, step) {
+        (Value::Object(members), Step::Key(key)) => {
+            let members = Arc::make_mut(members);
+            match members.get_mut(key) {
+                Some(member) => put(&mut member.node, rest, source),
+                // What is as by default is not written; only the last step can lead there.
+                None if rest.is_empty() => {
+                    let member = crate::document::Member { key_place: None, node: source.clone() };
+                    members.insert(key.clone(), member);
+                }
+                None => {}
+            }
+        }
+        (Value::Array(elements), Step::Index(i)) => {
+            if let Some(element) = Arc::make_mut(elements).get_mut(*i) {
+                put(element, rest, source);
+            }
+        }
+        (Value::Array(elements), Step::Key(_)) if elements.len() == 1 => {
+            if let Some(element) = Arc::make_mut(elements).first_mut() {
+                put(element, steps, source);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Whether a list is what its form gave.
+fn holds(scene: &Description, path: &Path, given: &Given) -> bool {
+    match (given, path.steps()) {
+        (Given::Objects(objects), [_, Step::Key(group)]) => {
+            scene.groups.get(group).is_some_and(|known| known.is_same(objects))
+        }
+        (Given::Objects(objects), _) => scene.objects.is_same(objects),
+        (Given::Lights(lights), _) => scene.lights.is_same(lights),
+        (Given::Label(label), _) => scene.background_light_group.as_ref() == Some(label),
+    }
+}

@@ -1,0 +1,251 @@
+//! A scene is a value: what a program changes is checked, seen at every frame, written and read again.
+
+use super::mutations::Numbers;
+use juggler_math::Vec3;
+use juggler_scene::description::{GroupName, Visible};
+use juggler_scene::{Object, Scene, TransformStep, built_in_scenes};
+use juggler_tracer::material::{AnyMaterial, MaterialRef, Phong};
+use juggler_tracer::shape::{Mesh, Shape, Sphere};
+use serde_json::{Value, json};
+
+const MOVING: &str = r#"{"version": 1, "animation": {"frames": 8, "frames_per_second": 4},
+    "variables": {"height": "1 + frame", "wide": 2},
+    "paths": {"way": {"points": [[0, 0, 0], [0, "=height", 4]]}},
+    "render": {"shutter": [0, 0.5], "size": [16, 16]},
+    "camera": {"perspective": {"eye": [0, 2, "=9 + frame"], "look_at": [0, 0, 0]}},
+    "textures": {"spots": {"checker": {"even": ["=frame / 8", 0, 0]}}},
+    "materials": {"red": {"phong": {"diffuse": ["=0.1 * frame", 0, 0]}},
+        "inlaid": {"principled": {"base_color": {"checker": {"odd": [0, "=frame / 10", 0]}},
+            "roughness": {"noise": {"scale": "=wide"}}}}},
+    "groups": {"pair": [{"shape": "sphere"}, {"shape": "cuboid", "transform": {"translate": ["=frame", 0, 0]}}]},
+    "lights": [{"point": {"position": [0, 5, "=frame"], "intensity": 9}}],
+    "objects": [
+        {"shape": {"sphere": {"radius": "=wide"}}, "transform": {"translate": [0, "=height", 0]}, "material": "red"},
+        {"group": "pair", "transform": [{"scale": "=wide"}, {"translate": [3, 0, 0]}]},
+        {"objects": [{"shape": "disk"}, {"shape": "sphere", "transform": [{"translate": {"along": {"path": "way",
+            "at": "=seconds / 2"}}}]}], "material": "inlaid"},
+        {"shape": "cuboid", "visible": "=frame < 4"}]}"#;
+
+fn moving() -> Scene {
+    Scene::from_json(MOVING, "moving.json").unwrap()
+}
+
+/// The scene written, read again and brought to a frame.
+fn again(scene: &Scene, frame: f64) -> Scene {
+    Scene::from_json(scene.to_json(), "again.json").and_then(|scene| scene.at_frame(frame)).unwrap_or_else(|error| {
+        panic!("{error}\n{}", scene.to_json());
+    })
+}
+
+/// The same scene, as far as a picture can tell, at three frames, however the frame was reached.
+fn assert_is_one(scene: &Scene, what: &str) {
+    for frame in [0.0, 2.5, 5.0] {
+        let there = scene.at_frame(frame).unwrap();
+        assert!(there.compile().is_ok(), "{what}");
+        assert_eq!(there.fingerprint(), again(scene, frame).fingerprint(), "{what} at {frame}");
+        assert_eq!(there.at_frame(1.0).unwrap().fingerprint(), again(&there, 1.0).fingerprint(), "{what} from {frame}");
+    }
+}
+
+#[test]
+fn scenes_survive_being_written() {
+    assert_is_one(&moving(), "moving");
+    for scene in built_in_scenes() {
+        let scene = Scene::built_in(scene.name).unwrap();
+        let there = scene.at_frame(1.5).unwrap();
+        assert_eq!(there.fingerprint(), again(&scene, 1.5).fingerprint(), "{}", scene.description.title);
+        assert_eq!(there.still().fingerprint().parts().get("objects"), there.fingerprint().parts().get("objects"));
+    }
+}
+
+fn place(scene: &Scene, object: usize) -> Vec3 {
+    let steps = &scene.description.objects[object].transform;
+    steps.iter().find_map(|step| if let TransformStep::Translate(by) = step { Some(*by) } else { None }).unwrap()
+}
+
+/// Each of these once had no effect, or was lost at another frame.
+#[test]
+fn what_a_program_changes_is_kept() {
+    // An object that moves is replaced: it stands still.
+    let mut scene = moving();
+    let before = scene.fingerprint();
+    scene.description.objects[0] = Object::new(Sphere { radius: 3.0 }).at(1.0, 1.0, 1.0).into();
+    assert_ne!(scene.fingerprint(), before);
+    assert_eq!(place(&scene.at_frame(4.0).unwrap(), 0), Vec3::ONE);
+    assert_is_one(&scene, "replaced");
+    // Of an object that moves, something else is changed: it moves on.
+    let mut scene = moving();
+    let material = Some(MaterialRef::from(Phong::default()));
+    scene.description.objects[0].material.clone_from(&material);
+    let later = scene.at_frame(4.0).unwrap();
+    assert_eq!((place(&later, 0), &later.description.objects[0].material), (Vec3::new(0.0, 5.0, 0.0), &material));
+    assert_is_one(&scene, "other material");
+    // What moves is changed: it stands still, all else moves on.
+    let mut scene = moving();
+    scene.description.objects[0].transform = vec![TransformStep::Translate(Vec3::Z)];
+    scene = scene.with_value("/variables/wide", json!(5)).unwrap();
+    let later = scene.at_frame(4.0).unwrap();
+    assert_eq!(place(&later, 0), Vec3::Z);
+    assert_eq!(later.description.objects[0].shape, Some(Sphere { radius: 5.0 }.into()));
+    assert_is_one(&scene, "other place");
+}
+
+#[test]
+fn changes_anywhere_in_a_scene_are_kept() {
+    // Objects that move may change their places in the list.
+    let mut scene = moving();
+    scene.description.objects.remove(1);
+    scene.description.objects.insert(0, Object::new(Sphere::default()).into());
+    assert_eq!(place(&scene.at_frame(4.0).unwrap(), 1), Vec3::new(0.0, 5.0, 0.0));
+    assert_is_one(&scene, "moved in the list");
+    // Those within others, in groups, lights, settings, materials.
+    let mut scene = moving();
+    scene.description.objects[2].objects.as_mut().unwrap()[1].visible = Visible(false);
+    scene.description.groups["pair"][1].name = Some("block".into());
+    let light = scene.description.lights[0].clone();
+    scene.description.lights.push(light);
+    scene.description.render.samples = 3;
+    *scene.description.materials["red"] = AnyMaterial::from(Phong::default());
+    let later = scene.at_frame(3.0).unwrap();
+    assert!(!later.description.objects[2].inner()[1].is_visible());
+    assert_eq!((later.description.lights.len(), later.description.render.samples), (2, 3));
+    assert_is_one(&scene, "everywhere");
+}
+
+/// What a text is refused for, a program is refused for too.
+#[test]
+fn what_a_program_changes_is_checked() {
+    let refused = |change: &dyn Fn(&mut Scene), path: &str, words: &str| {
+        let mut scene = moving();
+        change(&mut scene);
+        let problems = scene.check();
+        let found = problems.list().iter().any(|problem| problem.path == path && problem.message.contains(words));
+        assert!(found && scene.compile().is_err() && problems.errors() > 0, "{path}: {problems}");
+    };
+    refused(
+        &|scene| scene.description.objects[3].group = Some(GroupName("none".into())),
+        "objects[3]",
+        "exactly one of",
+    );
+    refused(
+        &|scene| scene.description.objects[3].material = Some(MaterialRef::Name("none".into())),
+        "objects[3].material",
+        "no material",
+    );
+    refused(
+        &|scene| drop(scene.description.materials.shift_remove("red")),
+        "objects[0].material",
+        "no material is called `red`",
+    );
+    refused(&|scene| drop(scene.description.groups.shift_remove("pair")), "objects[1].group", "no group");
+    refused(&|scene| scene.description.render.samples = 0, "render.samples", "between 1");
+    refused(&|scene| scene.description.animation.frames = 0, "animation.frames", "between 1");
+    refused(
+        &|scene| scene.description.objects[0].shape = Some(Sphere { radius: -1.0 }.into()),
+        "objects[0].shape.sphere.radius",
+        "greater than 0",
+    );
+    refused(
+        &|scene| {
+            scene.description.objects[2].objects.as_mut().unwrap()[0].shape = Some(Sphere { radius: f32::NAN }.into());
+        },
+        "objects[2].objects[0].shape.sphere.radius",
+        "not finite",
+    );
+}
+
+#[test]
+fn copies_share_what_is_not_changed() {
+    let scene = moving();
+    let mut copy = scene.clone();
+    copy.description.objects[3].name = Some("mine".into());
+    let (own, other) = (&scene.description, &copy.description);
+    assert!(own.objects[2].is_same(&other.objects[2]) && !own.objects[3].is_same(&other.objects[3]));
+    assert!(own.materials.is_same(&other.materials) && own.objects[3].name.is_none());
+    let later = scene.at_frame(3.0).unwrap();
+    assert!(own.textures["spots"] != later.description.textures["spots"]);
+    assert!(own.groups["pair"][0].is_same(&later.description.groups["pair"][0]));
+}
+
+/// Scenes with other meshes once had one fingerprint when their meshes were prepared.
+#[test]
+fn prepared_meshes_have_fingerprints_of_their_own() {
+    let scene = |x: f32| {
+        let mut mesh = Mesh::from_triangles([Vec3::ZERO, Vec3::new(x, 0.0, 0.0), Vec3::Y], [[0, 1, 2]]);
+        mesh.prepare().unwrap();
+        Scene::new().add(Object::new(mesh))
+    };
+    assert_ne!(scene(1.0).fingerprint(), scene(2.0).fingerprint());
+    assert_eq!(scene(1.0).fingerprint(), again(&scene(1.0), 0.0).fingerprint());
+    assert_eq!(scene(1.0).compile().unwrap().world.geometry().triangles, 1);
+}
+
+/// Every place in a scene's JSON.
+fn places(json: &Value, at: &str, found: &mut Vec<String>) {
+    found.push(at.to_owned());
+    match json {
+        Value::Object(members) => members.iter().for_each(|(key, member)| {
+            places(member, &format!("{at}/{}", key.replace('~', "~0").replace('/', "~1")), found);
+        }),
+        Value::Array(elements) => {
+            elements.iter().enumerate().for_each(|(i, element)| places(element, &format!("{at}/{i}"), found));
+        }
+        _ => {}
+    }
+}
+
+/// Puts a value into JSON as a pointer says; null takes away.
+fn put(json: &mut Value, pointer: &str, value: &Value) {
+    let (outer, last) = pointer.rsplit_once('/').unwrap();
+    let last = last.replace("~1", "/").replace("~0", "~");
+    match json.pointer_mut(outer) {
+        Some(Value::Object(members)) if value.is_null() => drop(members.shift_remove(&last)),
+        Some(Value::Object(members)) => drop(members.insert(last, value.clone())),
+        Some(Value::Array(elements)) if value.is_null() => drop(elements.remove(last.parse().unwrap())),
+        Some(Value::Array(elements)) => elements[last.parse::<usize>().unwrap()] = value.clone(),
+        _ => unreachable!("{pointer}"),
+    }
+}
+
+/// A scene that is edited is the scene that is written with the edit in it, and one is refused where the other is.
+#[test]
+fn edited_scenes_are_those_that_are_written_anew() {
+    let mut numbers = Numbers(38);
+    let texts = [MOVING, built_in_scenes().iter().find(|scene| scene.name == "sphere-triangle-shadow").unwrap().json];
+    let (mut same, mut refused) = (0, 0);
+    for round in 0..600 {
+        let scene = Scene::from_json(texts[round % texts.len()], "edited.json").unwrap();
+        let json = scene.to_value();
+        let mut known = Vec::new();
+        places(&json, "", &mut known);
+        // The version, and what stands for the whole scene.
+        known.retain(|place| !place.is_empty() && place != "/version");
+        let place = &known[numbers.below(known.len())];
+        let value = match numbers.below(6) {
+            0 => Value::Null,
+            1 => json!(numbers.below(9)),
+            2 => json!("=0.5 + frame / 10"),
+            3 => json!({"animate": {"keys": [[0, 1], [2, 3]]}}),
+            4 => json.pointer(&known[numbers.below(known.len())]).unwrap().clone(),
+            _ => json!([numbers.below(3), "=wide", 1]),
+        };
+        let mut written = json.clone();
+        put(&mut written, place, &value);
+        let edited = scene.with_value(place, value.clone());
+        let anew = Scene::from_json(written.to_string(), "anew.json");
+        let what = format!("{round}: {place} = {value}");
+        match (edited, anew) {
+            (Ok(edited), Ok(anew)) => {
+                for frame in [0.0, 3.5] {
+                    let both = [&edited, &anew].map(|scene| scene.at_frame(frame).map(|there| there.fingerprint()));
+                    let [edited, anew] = both.map(|found| found.map_err(|error| error.to_string()));
+                    assert_eq!(edited.as_ref().ok(), anew.as_ref().ok(), "{what} at {frame}\n{edited:?}\n{anew:?}");
+                }
+                same += 1;
+            }
+            (Err(_), Err(_)) => refused += 1,
+            (edited, anew) => panic!("{what}\nedited: {:?}\nanew: {:?}", edited.err(), anew.err()),
+        }
+    }
+    assert!(same > 100 && refused > 100, "{same} {refused}");
+}
