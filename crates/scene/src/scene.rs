@@ -3,11 +3,11 @@
 use crate::SceneError;
 use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Needs, light_files, pictures};
 use crate::description::{Description, described};
-use crate::document::{Document, Node, Place, Sources, Unreadable};
+use crate::document::{Document, Node, Place, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::import::Content;
 use crate::integrator::IntegratorChoice;
-use crate::motion::{self, Reader, Tracks};
+use crate::motion::{self, Reader, Tracks, read_list};
 use crate::path::Path as ScenePath;
 use crate::relocate::relocate;
 use crate::report::{Finding, Problems};
@@ -105,7 +105,7 @@ impl Scene {
     }
 
     fn parse(text: String, name: &str, library: Library) -> Result<Self, SceneError> {
-        let (document, mut findings) = Document::read(name, text, library.store())
+        let (mut document, mut findings) = Document::read(name, text, library.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, &|_| None)))?;
         let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, 0.0);
         findings.extend(wrong);
@@ -114,9 +114,18 @@ impl Scene {
         let whole = found.is_some() && !findings.iter().any(Finding::is_error);
         let (mut description, in_place) = found.unwrap_or_default();
         motion::attach(&mut description, &document.tree, &in_place);
+        for list in std::mem::take(&mut document.lists) {
+            findings.extend(read_list(&mut description, &list, &document.sources));
+        }
+        let whole = whole && !findings.iter().any(Finding::is_error);
         let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
-        let origin = Some(Arc::new(Origin { document, warnings, names: GivenNames::of(&description) }));
-        let scene = Self { description, origin, library, ..Self::default() };
+        let names = GivenNames::of(&description);
+        let scene = Self {
+            description,
+            origin: Some(Arc::new(Origin { document, warnings, names })),
+            library,
+            ..Self::default()
+        };
         if whole {
             return Ok(scene);
         }
@@ -321,7 +330,7 @@ impl Scene {
         let Some(origin) = self.origin.as_ref().filter(|_| !findings.is_empty()) else {
             return Problems::new(findings, self.sources().clone(), &|_| None);
         };
-        let Document { tree, sources } = &origin.document;
+        let Document { tree, sources, .. } = &origin.document;
         let (resolved, _) = animate::resolve(tree, sources, self.frame);
         Problems::new(findings, sources.clone(), &|path| Some(self.place_of(path, &resolved)))
     }
@@ -331,8 +340,23 @@ impl Scene {
         let written = tree.place_of(path);
         let Some((item, depth)) = self.description.item_of(path) else { return written };
         let own = ScenePath::from_steps(path.steps().iter().take(depth));
-        let is_there = !item.is_changed() && tree.place_of(&own).0 == item.place();
-        if is_there { written } else { (item.place(), depth) }
+        let is_there = tree.place_of(&own).0 == item.place();
+        match item.place().filter(|_| !item.is_changed()) {
+            Some(_) if is_there => written,
+            // The item is not in the tree, or stands elsewhere by now.
+            Some(place) => self.place_within(place, path, depth).unwrap_or((Some(place), depth)),
+            None => (item.place(), depth),
+        }
+    }
+
+    /// The same inside of an item that was written at `place`, to which the first `depth` steps lead.
+    fn place_within(&self, place: Place, path: &ScenePath, depth: usize) -> Option<(Option<Place>, usize)> {
+        let text = &self.sources().get(place.file)?.text;
+        let (node, _) =
+            parse_part(text, place.start as usize..place.end as usize, place.file, ScenePath::root()).ok()?;
+        let inner = ScenePath::from_steps(path.steps().iter().skip(depth));
+        let (found, steps) = node.place_of(&inner);
+        Some((found, depth + steps))
     }
 }
 

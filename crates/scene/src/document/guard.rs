@@ -83,7 +83,7 @@ pub fn check(text: &str) -> Result<(), Refused> {
 }
 
 /// The position of the closing quote of the string that opens at `start`.
-fn skip_string(bytes: &[u8], start: usize) -> usize {
+pub(super) fn skip_string(bytes: &[u8], start: usize) -> usize {
     let mut i = start + 1;
     while let Some(byte) = bytes.get(i) {
         match byte {
@@ -96,7 +96,7 @@ fn skip_string(bytes: &[u8], start: usize) -> usize {
 }
 
 /// The last position of the comment that opens at `start`; `start` itself when there is none.
-fn skip_comment(bytes: &[u8], start: usize) -> usize {
+pub(super) fn skip_comment(bytes: &[u8], start: usize) -> usize {
     let rest = bytes.get(start + 1..).unwrap_or_default();
     match rest.first() {
         Some(b'/') => start + rest.iter().take_while(|b| !matches!(b, b'\n' | b'\r')).count(),

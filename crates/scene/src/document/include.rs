@@ -4,7 +4,8 @@
 //! (camera of its own, size, title) is left aside, so that a whole scene can serve as a library. A file that is
 //! named twice comes in once.
 
-use super::guard::Refused;
+use super::guard::{self, Refused};
+use super::pieces::{self, LongList};
 use super::source::{FileId, Place, Sources};
 use super::tree::{Member, Node, Value};
 use super::{Unreadable, parse};
@@ -50,9 +51,16 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The merged tree of the main file, as far as there is one.
-    pub fn main(&mut self, name: &str, text: String) -> Option<Node> {
-        self.file(name, text)
+    /// The merged tree of the main file, as far as there is one, and its long lists, which are left out of the tree.
+    pub fn main(&mut self, name: &str, text: String) -> Option<(Node, Vec<LongList>)> {
+        match pieces::split(&text) {
+            // What is included stands before what includes it: lists of several files are read as trees.
+            Some((rest, lists)) if guard::check(&text).is_ok() && is_alone(&rest) => {
+                let id = self.sources.add(name, text);
+                Some((self.merged(id, parse(&rest, id))?, lists))
+            }
+            _ => Some((self.file(name, text)?, Vec::new())),
+        }
     }
 
     /// What was read, and all that was wrong with it.
@@ -65,7 +73,13 @@ impl<'s> Reader<'s> {
     fn file(&mut self, name: &str, text: String) -> Option<Node> {
         let id = self.sources.add(name, text);
         let text = self.sources.get(id).map(|source| source.text.as_str()).unwrap_or_default();
-        let mut tree = match parse(text, id) {
+        let parsed = parse(text, id);
+        self.merged(id, parsed)
+    }
+
+    /// The tree of a file, what it includes merged.
+    fn merged(&mut self, id: FileId, parsed: Result<(Node, Vec<Refused>), Refused>) -> Option<Node> {
+        let mut tree = match parsed {
             Ok((tree, refused)) => {
                 self.findings.extend(refused.into_iter().map(|refused| finding(id, refused)));
                 tree
@@ -216,7 +230,12 @@ impl<'s> Reader<'s> {
     }
 }
 
-fn finding(file: FileId, refused: Refused) -> Finding {
+/// Whether a text is a scene that includes no other.
+fn is_alone(text: &str) -> bool {
+    parse(text, FileId::MAIN).is_ok_and(|(tree, _)| tree.get("include").is_none())
+}
+
+pub fn finding(file: FileId, refused: Refused) -> Finding {
     let at = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
     let place = Place { file, start: at(refused.at.start), end: at(refused.at.end) };
     let finding = Finding::error(refused.message).on(Some(place)).maybe_help(refused.help);

@@ -3,6 +3,7 @@
 mod guard;
 mod include;
 mod parse;
+mod pieces;
 mod put;
 mod source;
 mod tree;
@@ -12,7 +13,9 @@ pub use include::MAX_FILES;
 pub use source::{FileId, Place, Source, Sources};
 pub use tree::{Member, Members, Node, Value};
 
-pub(crate) use parse::parse;
+pub(crate) use include::finding;
+pub(crate) use parse::{parse, parse_part};
+pub(crate) use pieces::LongList;
 pub(crate) use put::put;
 
 use crate::report::Finding;
@@ -26,8 +29,10 @@ use std::path::Path;
 pub struct Document {
     /// The texts.
     pub sources: Sources,
-    /// The merged tree, expressions unresolved.
+    /// The merged tree, expressions unresolved, long lists left empty.
     pub tree: Node,
+    /// The long lists of the main file, which are read piece by piece.
+    pub(crate) lists: Vec<LongList>,
 }
 
 impl Document {
@@ -37,10 +42,10 @@ impl Document {
     /// Mistakes that leave everything in its place come with the document.
     pub fn read(name: &str, text: String, store: &Store) -> Result<(Self, Vec<Finding>), (Sources, Vec<Finding>)> {
         let mut reader = include::Reader::new(Path::new(name), store);
-        let tree = reader.main(name, text);
+        let found = reader.main(name, text);
         let (sources, findings, complete) = reader.finish();
-        match tree {
-            Some(tree) if complete => Ok((Self { sources, tree }, findings)),
+        match found {
+            Some((tree, lists)) if complete => Ok((Self { sources, tree, lists }, findings)),
             _ => Err((sources, findings)),
         }
     }

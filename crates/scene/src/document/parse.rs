@@ -18,16 +18,23 @@ use std::sync::Arc;
 /// In the tree the first of two equal keys stands, and a 1 for a number that cannot be read.
 pub fn parse(text: &str, file: FileId) -> Result<(Node, Vec<Refused>), Refused> {
     guard::check(text)?;
+    parse_part(text, 0..text.len(), file, Path::root())
+}
+
+/// The same of the value that stands in a part of a text whose depth and size were checked; the value's path is `path`.
+pub fn parse_part(text: &str, part: Range<usize>, file: FileId, path: Path) -> Result<(Node, Vec<Refused>), Refused> {
+    let start = part.start;
+    let text = text.get(part).unwrap_or_default();
     let parsed = parse_to_ast(text, &CollectOptions::default(), &options()).map_err(|error| {
         let at = on_characters(text, error.range().start..error.range().end);
         let (message, help) = explain(error.kind(), text.get(at.clone()).unwrap_or_default());
-        Refused { at, path: None, message, help }
+        Refused { at: start + at.start..start + at.end, path: None, message, help }
     })?;
     let Some(value) = parsed.value else {
         let help = Some("the smallest scene is {\"version\": 1, \"objects\": [{\"shape\": \"sphere\"}]}".into());
         return Err(Refused { at: 0..0, path: None, message: "the file is empty".into(), help });
     };
-    let mut reader = Reader { file, path: Path::root(), refused: Vec::new() };
+    let mut reader = Reader { file, start, path, refused: Vec::new() };
     let node = reader.node(value);
     Ok((node, reader.refused))
 }
@@ -105,18 +112,21 @@ fn exact(text: &str) -> Option<Number> {
 
 struct Reader {
     file: FileId,
+    /// Where the part that is read begins.
+    start: usize,
     path: Path,
     refused: Vec<Refused>,
 }
 
 impl Reader {
     fn place(&self, range: Bytes) -> Option<Place> {
-        let at = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
+        let at = |byte: usize| u32::try_from(self.start + byte).unwrap_or(u32::MAX);
         Some(Place { file: self.file, start: at(range.start), end: at(range.end) })
     }
 
     fn refuse(&mut self, range: Bytes, message: String, help: &str) {
-        let (at, path) = (range.start..range.end, Some(self.path.clone()));
+        let at = self.start + range.start..self.start + range.end;
+        let path = Some(self.path.clone());
         self.refused.push(Refused { at, path, message, help: Some(help.to_owned()) });
     }
 

@@ -3,18 +3,21 @@
 //! the scenes of all frames.
 //!
 //! 1. [`attach`]: a scene that was read from a text gives its items their templates and places.
+//!    Its long lists are read piece by piece: [`lists`].
 //! 2. [`settle`]: where a program has changed an item that moves, the change joins the template.
 //! 3. [`read`]: templates become items at a frame.
 //! 4. [`tracks`]: the same at even times while the shutter is open, for what moves meanwhile.
 //! 5. [`write`](mod@write): a scene as JSON, with everything that moves.
 
 mod attach;
+mod lists;
 mod read;
 mod settle;
 mod tracks;
 mod write;
 
 pub(crate) use attach::{attach, attach_items};
+pub(crate) use lists::read_list;
 pub(crate) use read::{Part, Reader, Wanted};
 pub(crate) use settle::settled;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};

@@ -3,7 +3,7 @@
 use super::mutations::Numbers;
 use juggler_math::Vec3;
 use juggler_scene::description::{GroupName, Visible};
-use juggler_scene::{Object, Scene, TransformStep, built_in_scenes};
+use juggler_scene::{Object, Scene, SceneError, TransformStep, built_in_scenes};
 use juggler_tracer::material::{AnyMaterial, MaterialRef, Phong};
 use juggler_tracer::shape::{Mesh, Shape, Sphere};
 use serde_json::{Value, json};
@@ -248,4 +248,53 @@ fn edited_scenes_are_those_that_are_written_anew() {
         }
     }
     assert!(same > 100 && refused > 100, "{same} {refused}");
+}
+
+/// A long list, which is read piece by piece, gives the scene that a short one gives, and the same messages.
+#[test]
+fn long_lists_are_read_as_short_ones_are() {
+    let ball = |i: usize| match i % 500 {
+        7 => r#"{"shape": {"sphere": {"radius": "=1 + frame"}}, "material": "red"}"#.to_owned(),
+        8 => r#"{"objects": [{"shape": "disk", "material": {"phong": {"diffuse": {"checker": {}}}}}]}"#.to_owned(),
+        _ => format!(r#"{{"shape": "sphere", "transform": {{"translate": [{i}, 0, 0]}}, "name": "b{i}"}}"#),
+    };
+    let text = |count: usize, last: &str| {
+        let balls: Vec<String> = (0..count).map(ball).chain([last.to_owned()]).collect();
+        format!(
+            "{{\"version\": 1, \"animation\": {{\"frames\": 9}},\n\"materials\": {{\"red\": {{\"phong\": {{}}}}}}, \"objects\": [{}]}}",
+            balls.join(",\n")
+        )
+    };
+    let read = |count: usize, last: &str| Scene::from_json(text(count, last), "long.json");
+    let (long, short) = (read(2500, r#"{"shape": "plane"}"#).unwrap(), read(600, r#"{"shape": "plane"}"#).unwrap());
+    for frame in [0.0, 2.5] {
+        let [long, short] = [&long, &short].map(|scene| scene.at_frame(frame).unwrap().description);
+        assert_eq!((long.objects.len(), short.objects.len()), (2501, 601));
+        assert_eq!(long.objects[..600], short.objects[..600]);
+    }
+    assert_is_one(&long, "long");
+    for (wrong, path, words) in [
+        (r#"{"shape": "spere"}"#, "shape", "unknown kind"),
+        (r#"{"shape": {"sphere": {"radius": "=r"}}}"#, "shape.sphere.radius", "`r`"),
+        (r#"{"shape": "sphere", "material": "blue"}"#, "material", "no material"),
+        (r#"{"shape": "sphere", "shape": "disk"}"#, "shape", "second time"),
+        (r#"{"shape": {"mesh": {"file": "none.obj"}}}"#, "shape.mesh.file", "none.obj"),
+        (r#"{"shape": "sphere" "name": 3}"#, "", "missing"),
+    ] {
+        let told = |count: usize| {
+            let problems = match read(count, wrong) {
+                Ok(scene) => scene.check(),
+                Err(SceneError::Problems(problems)) => problems,
+                Err(error) => panic!("{error}"),
+            };
+            let problem = problems.list()[0].clone();
+            let line = problems.render(false).lines().nth(1).unwrap_or_default().to_owned();
+            assert!(line.contains(&format!("long.json:{}:", count + 2)), "{line}");
+            (problem.path.replace(&count.to_string(), "N"), problem.message)
+        };
+        let (found, message) = told(2500);
+        assert_eq!((&found, &message), (&told(600).0, &told(600).1));
+        let expected = if path.is_empty() { String::new() } else { format!("objects[N].{path}") };
+        assert!(found == expected && message.contains(words), "{found}: {message}");
+    }
 }

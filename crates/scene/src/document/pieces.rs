@@ -1,0 +1,197 @@
+//! Long lists of a text, read piece by piece: a tree of hundreds of thousands of objects would take many times the memory
+//! of the objects themselves.
+
+use super::guard::{Refused, skip_comment, skip_string};
+use super::parse::parse_part;
+use super::source::FileId;
+use super::tree::Node;
+use crate::path::{Path, Step};
+use std::ops::Range;
+
+/// Lists that may be long.
+const LISTS: [&str; 2] = ["objects", "lights"];
+/// A list of fewer elements is read with all else.
+const MIN_ELEMENTS: usize = 1000;
+/// Bytes of text that are read at once, if they are more than one element.
+const PIECE: usize = 1 << 17;
+/// Bytes that an element takes beside its text while a scene is read, about and not fewer: as an item, with the indices of
+/// where it stands.
+const ELEMENT: u64 = 1000;
+
+/// The elements of a piece as trees, with what is wrong in them; or the first mistake of syntax.
+pub type Piece = Result<(Vec<Node>, Vec<Refused>), Refused>;
+
+/// A list of a text that is too long for a tree.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LongList {
+    /// The section of the scene: `objects` or `lights`.
+    pub key: &'static str,
+    /// Where the elements stand in the text, in order.
+    elements: Vec<Range<usize>>,
+}
+
+impl LongList {
+    /// The list's pieces: the number of the first element of each, and its elements.
+    pub fn pieces<'t>(&'t self, text: &'t str, file: FileId) -> impl Iterator<Item = (usize, Piece)> + 't {
+        let mut first = 0;
+        std::iter::from_fn(move || {
+            let rest = self.elements.get(first..).filter(|rest| !rest.is_empty())?;
+            let begin = rest.first().map_or(0, |element| element.start);
+            let count = rest.iter().take_while(|element| element.end - begin <= PIECE).count().max(1);
+            let piece = rest.get(..count).unwrap_or_default();
+            let number = first;
+            first += count;
+            Some((number, self.trees(text, file, number, piece)))
+        })
+    }
+
+    fn trees(&self, text: &str, file: FileId, first: usize, piece: &[Range<usize>]) -> Piece {
+        let (mut nodes, mut refused) = (Vec::with_capacity(piece.len()), Vec::new());
+        for (i, element) in piece.iter().enumerate() {
+            let path = Path::from_steps(&[Step::Key(self.key.to_owned()), Step::Index(first + i)]);
+            let (node, more) = parse_part(text, element.clone(), file, path)?;
+            nodes.push(node);
+            refused.extend(more);
+        }
+        Ok((nodes, refused))
+    }
+}
+
+/// The text with its long lists left empty, all else where it stands, and the lists. Nothing for a text without long lists,
+/// or one with mistakes that show here.
+pub fn split(text: &str) -> Option<(String, Vec<LongList>)> {
+    let bytes = text.as_bytes();
+    let (mut depth, mut i) = (0_usize, 0);
+    let (mut word, mut key) = (0..0, None);
+    let mut found: Vec<(LongList, Range<usize>)> = Vec::new();
+    while let Some(byte) = bytes.get(i) {
+        match byte {
+            b'"' => {
+                let end = skip_string(bytes, i);
+                word = i + 1..end;
+                i = end;
+            }
+            b'/' => i = skip_comment(bytes, i),
+            b':' if depth == 1 => key = text.get(word.clone()).and_then(|w| LISTS.into_iter().find(|list| *list == w)),
+            b'[' if depth == 1 && key.is_some() => {
+                let (elements, end) = elements(bytes, i + 1)?;
+                let key = key.take()?;
+                if found.iter().any(|(known, _)| known.key == key) {
+                    return None;
+                }
+                found.push((LongList { key, elements }, i + 1..end));
+                i = end;
+            }
+            b'[' | b'{' => depth += 1,
+            b']' | b'}' => depth = depth.checked_sub(1)?,
+            b',' if depth == 1 => key = None,
+            _ => {}
+        }
+        i += 1;
+    }
+    found.retain(|(list, _)| list.elements.len() >= MIN_ELEMENTS);
+    if found.is_empty() {
+        return None;
+    }
+    let mut rest = bytes.to_vec();
+    for (_, inner) in &found {
+        rest.get_mut(inner.clone())?.fill(b' ');
+    }
+    Some((String::from_utf8(rest).ok()?, found.into_iter().map(|(list, _)| list).collect()))
+}
+
+/// The elements of the array whose first byte is at `i`, and where its closing bracket stands.
+fn elements(bytes: &[u8], mut i: usize) -> Option<(Vec<Range<usize>>, usize)> {
+    let (mut depth, mut elements) = (0_usize, Vec::new());
+    let (mut start, mut end) = (None, 0);
+    loop {
+        let first = i;
+        match bytes.get(i)? {
+            b'/' => i = skip_comment(bytes, i),
+            b',' | b']' if depth == 0 => {
+                let is_end = bytes.get(i) == Some(&b']');
+                match start.take() {
+                    Some(start) => elements.push(start..end),
+                    // A comma may stand behind the last element, none elsewhere.
+                    None if is_end => {}
+                    None => return None,
+                }
+                if is_end {
+                    return Some((elements, i));
+                }
+            }
+            byte if byte.is_ascii_whitespace() => {}
+            byte => {
+                match byte {
+                    b'"' => i = skip_string(bytes, i),
+                    b'[' | b'{' => depth += 1,
+                    b']' | b'}' => depth = depth.checked_sub(1)?,
+                    _ => {}
+                }
+                start.get_or_insert(first);
+                end = i + 1;
+            }
+        }
+        i += 1;
+    }
+}
+
+/// Bytes that it takes to read a text, as [`bytes_to_read`](super::bytes_to_read), long lists piece by piece.
+pub fn bytes_to_read(text: &str) -> u64 {
+    let whole = |text: &str| super::bytes_to_read(text.as_bytes());
+    let Some((rest, lists)) = split(text) else { return whole(text) };
+    // The text without its lists is another text of the same length.
+    let mut bytes = whole(&rest) + text.len() as u64;
+    for list in lists {
+        let longest = list.elements.iter().map(|element| element.len()).max().unwrap_or_default();
+        let first = list.elements.first().map_or(0, |element| element.start);
+        let end = list.elements.last().map_or(0, |element| element.end);
+        let length = end.saturating_sub(first) as u64;
+        // One piece is a tree at a time.
+        let share = longest.max(PIECE) as f64 / length.max(1) as f64;
+        let tree = whole(text.get(first..end).unwrap_or_default()) as f64 * share.min(1.0);
+        bytes += length + tree as u64 + list.elements.len() as u64 * ELEMENT;
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(count: usize) -> String {
+        let ball = r#"{"shape": "sphere", /* ] */ "name": "a,\"b]"}"#;
+        let balls = vec![ball; count].join(" , ");
+        format!("{{\"version\": 1, // \"objects\": [\n \"lights\": [], \"objects\": [ {balls}, ], \"title\": \"[\"}}")
+    }
+
+    #[test]
+    fn long_lists_are_taken_out_and_nothing_else_moves() {
+        let text = text(1000);
+        let (rest, lists) = split(&text).unwrap();
+        assert_eq!((rest.len(), lists.len(), lists[0].key, lists[0].elements.len()), (text.len(), 1, "objects", 1000));
+        let whole = super::super::parse(&text, FileId::MAIN).unwrap().0;
+        let without = super::super::parse(&rest, FileId::MAIN).unwrap().0;
+        assert_eq!(without.get("title"), whole.get("title"));
+        assert_eq!(without.get("objects").unwrap().elements().len(), 0);
+        let mut nodes = Vec::new();
+        for (first, piece) in lists[0].pieces(&text, FileId::MAIN) {
+            assert_eq!(first, nodes.len());
+            nodes.extend(piece.unwrap().0);
+        }
+        assert_eq!(nodes, whole.get("objects").unwrap().elements());
+        assert!(bytes_to_read(&text) < super::super::bytes_to_read(text.as_bytes()));
+    }
+
+    #[test]
+    fn what_is_short_or_wrong_is_left_to_others() {
+        assert_eq!(split(&text(999)), None);
+        let long = text(1000);
+        for (from, to) in [(" , ", " , , "), ("\"lights\": []", "\"objects\": []"), ("], \"title\"", "}, \"title\"")] {
+            assert_eq!(split(&long.replacen(from, to, 1)), None, "{to}");
+        }
+        for end in [0, 1, 20, long.len() / 2] {
+            assert_eq!(split(&long[..end]), None);
+        }
+    }
+}
