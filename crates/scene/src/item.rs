@@ -44,9 +44,13 @@ pub(crate) struct Template {
 }
 
 impl<T> Item<T> {
-    /// A value as it was read from a text and checked.
-    pub(crate) fn read(value: T, place: Option<Place>, template: Option<Arc<Template>>) -> Self {
-        Self(Arc::new(Inner { value, template, place, state: State::Checked }))
+    /// The same item, read from a text and checked.
+    pub(crate) fn learned(mut self, place: Option<Place>, template: Option<Arc<Template>>) -> Self
+    where
+        T: Clone,
+    {
+        self.learn(place, template);
+        self
     }
 
     /// Learns that the value was read from a text and checked, where it stands there, and how it moves.

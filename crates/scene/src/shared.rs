@@ -16,6 +16,14 @@ impl<T> Shared<T> {
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
+
+    /// The value itself; a copy where another copy of the scene holds it too.
+    pub fn into_inner(self) -> T
+    where
+        T: Clone,
+    {
+        Arc::unwrap_or_clone(self.0)
+    }
 }
 
 impl<T> Clone for Shared<T> {

@@ -16,7 +16,7 @@ use juggler_tracer::light::AnyLight;
 use juggler_tracer::material::AnyMaterial;
 use juggler_tracer::texture::AnyTexture;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value};
 use std::sync::Arc;
 
 /// An item, or a list of items, that is to be read.
@@ -61,7 +61,8 @@ enum Kind {
     Light,
     Object,
     Objects,
-    Lights,
+    /// So many.
+    Lights(usize),
     Label,
 }
 
@@ -76,7 +77,7 @@ impl Kind {
             ("textures", [_]) => Self::Texture,
             ("materials", [_]) => Self::Material,
             ("lights", [_]) => Self::Light,
-            ("lights", []) => Self::Lights,
+            ("lights", []) => Self::Lights(0),
             ("objects", []) | ("groups", [_]) => Self::Objects,
             ("objects", _) | ("groups", [_, ..]) => Self::Object,
             ("background_light_group", []) => Self::Label,
@@ -116,6 +117,9 @@ impl<'s> Reader<'s> {
         self.findings.extend(checked.findings);
         self.findings.extend(checked.warnings);
         match checked.json {
+            Some(Value::Array(list)) if kind == Kind::Lights(0) => {
+                self.read.push((wanted, Kind::Lights(list.len()), Value::Array(list)));
+            }
             Some(json) => self.read.push((wanted, kind, json)),
             // The resolver has said what is wrong, or says nothing where something else is wrong that it needs.
             None if self.findings.len() == before => {
@@ -135,9 +139,10 @@ impl<'s> Reader<'s> {
         if findings.iter().any(Finding::is_error) {
             return (None, findings);
         }
-        let json = together(&self.read, self.textures);
+        let read: Vec<(&Wanted, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
+        let json = together(self.read, self.textures);
         match Description::deserialize(&json) {
-            Ok(scene) => (Some(taken(scene, &self.read)), findings),
+            Ok(scene) => (Some(taken(scene, &read)), findings),
             // The schema allows what the types refuse: only a slip of ours can bring us here.
             Err(error) => {
                 findings.push(Finding::error(error.to_string()));
@@ -158,74 +163,66 @@ fn written_at(path: &Path) -> Path {
 }
 
 /// One scene of all that was read. Items of maps are numbered in order; so are lists of objects, as groups.
-fn together(read: &[(&Wanted, Kind, Value)], textures: Vec<(String, Value)>) -> Value {
-    let mut scene = json!({"version": 1, "cameras": {}, "textures": {}, "materials": {}, "groups": {}, "lights": [], "objects": []});
-    let mut put = |section: &str, key: Option<String>, value: Value| match (scene.get_mut(section), key) {
-        (Some(Value::Array(list)), _) => list.push(value),
-        (Some(Value::Object(map)), Some(key)) => drop(map.insert(key, value)),
-        _ => {
-            if let Value::Object(members) = &mut scene {
-                members.insert(section.to_owned(), value);
-            }
-        }
-    };
-    for (i, (_, kind, json)) in read.iter().enumerate() {
-        let (json, key) = (json.clone(), Some(i.to_string()));
+fn together(read: Vec<(&Wanted, Kind, Value)>, textures: Vec<(String, Value)>) -> Value {
+    let mut sections: [Map<String, Value>; 4] = Default::default();
+    let (mut lights, mut objects, mut scene) = (Vec::new(), Vec::new(), Map::new());
+    let [cameras, named, materials, groups] = &mut sections;
+    for (i, (_, kind, json)) in read.into_iter().enumerate() {
+        let number = |map: &mut Map<String, Value>, json: Value| drop(map.insert(i.to_string(), json));
         match kind {
-            Kind::Render => put("render", None, json),
-            Kind::Tone => put("tone", None, json),
-            Kind::Background => put("background", None, json),
-            Kind::Camera => put("cameras", key, json),
-            Kind::Texture => put("textures", key, json),
-            Kind::Material => put("materials", key, json),
-            Kind::Light => put("lights", None, json),
-            Kind::Lights => json.as_array().into_iter().flatten().for_each(|light| put("lights", None, light.clone())),
-            Kind::Object => put("objects", None, json),
-            Kind::Objects => put("groups", key, json),
-            Kind::Label => put("background_light_group", None, json),
+            Kind::Camera => number(cameras, json),
+            Kind::Texture => number(named, json),
+            Kind::Material => number(materials, json),
+            Kind::Objects => number(groups, json),
+            Kind::Light => lights.push(json),
+            Kind::Lights(_) => lights.extend(if let Value::Array(list) = json { list } else { Vec::new() }),
+            Kind::Object => objects.push(json),
+            Kind::Render => drop(scene.insert("render".into(), json)),
+            Kind::Tone => drop(scene.insert("tone".into(), json)),
+            Kind::Background => drop(scene.insert("background".into(), json)),
+            Kind::Label => drop(scene.insert("background_light_group".into(), json)),
         }
     }
-    textures.into_iter().for_each(|(name, json)| put("textures", Some(name), json));
-    scene
+    named.extend(textures);
+    scene.insert("version".into(), 1.into());
+    for (key, map) in ["cameras", "textures", "materials", "groups"].into_iter().zip(sections) {
+        scene.insert(key.into(), Value::Object(map));
+    }
+    scene.insert("lights".into(), Value::Array(lights));
+    scene.insert("objects".into(), Value::Array(objects));
+    Value::Object(scene)
 }
 
 /// The items of a scene that was put together, each in its place.
-fn taken(scene: Description, read: &[(&Wanted, Kind, Value)]) -> Vec<(Path, Part)> {
-    let Description { render, tone, background, mut cameras, mut textures, mut materials, mut groups, .. } = scene;
-    let mut lights = scene.lights.iter().cloned();
-    let mut objects = scene.objects.iter().cloned();
+fn taken(scene: Description, read: &[(&Wanted, Kind)]) -> Vec<(Path, Part)> {
+    let Description { render, tone, mut background, background_light_group, cameras, textures, .. } = scene;
+    let (mut cameras, mut textures) = (cameras.into_inner(), textures.into_inner());
+    let (mut materials, mut groups) = (scene.materials.into_inner(), scene.groups.into_inner());
+    let (mut lights, mut objects) = (scene.lights.into_inner().into_iter(), scene.objects.into_inner().into_iter());
     let mut parts = Vec::with_capacity(read.len());
-    let mut background = background;
-    for (i, (wanted, kind, json)) in read.iter().enumerate() {
+    for (i, (wanted, kind)) in read.iter().enumerate() {
         let key = i.to_string();
         let part = match kind {
             Kind::Render => Some(Part::Render(wanted.item(render.clone()))),
             Kind::Tone => Some(Part::Tone(wanted.item(tone.clone()))),
             Kind::Background => background.take().map(|item| Part::Background(wanted.item(item))),
-            Kind::Camera => cameras.shift_remove(&key).map(|item| Part::Camera(wanted.item(item))),
+            Kind::Camera => cameras.swap_remove(&key).map(|item| Part::Camera(wanted.item(item))),
             Kind::Texture => textures.shift_remove(&key).map(|item| Part::Texture(wanted.item(item))),
-            Kind::Material => materials.shift_remove(&key).map(|item| Part::Material(wanted.item(item))),
+            Kind::Material => materials.swap_remove(&key).map(|item| Part::Material(wanted.item(item))),
             Kind::Light => lights.next().map(|item| Part::Light(wanted.item(item))),
-            Kind::Lights => {
-                let count = json.as_array().map_or(0, Vec::len);
-                let items = lights.by_ref().take(count).map(|light| Item::read(light.into_inner(), wanted.place, None));
+            Kind::Lights(count) => {
+                let items = lights.by_ref().take(*count).map(|light| light.learned(wanted.place, None));
                 Some(Part::Lights(items.collect()))
             }
             Kind::Object => objects.next().map(|item| Part::Object(wanted.object(item))),
-            Kind::Objects => groups.shift_remove(&key).map(|list| {
-                let still = |item: &Item<Object>| {
-                    Item::read(within((**item).clone(), &wanted.template.node, wanted.place), wanted.place, None)
-                };
-                Part::Objects(list.iter().map(still).collect())
-            }),
-            Kind::Label => scene.background_light_group.clone().map(Part::Label),
+            Kind::Objects => groups.swap_remove(&key).map(|list| Part::Objects(wanted.list(list))),
+            Kind::Label => background_light_group.clone().map(Part::Label),
         };
         parts.extend(part.map(|part| (wanted.path.clone(), part)));
     }
     // What is left are textures that value forms have written in place.
-    for (name, texture) in &*textures {
-        let texture = Item::read((**texture).clone(), None, None);
-        parts.push((Path::root().key("textures").key(name), Part::FormTexture(texture)));
+    for (name, texture) in textures {
+        parts.push((Path::root().key("textures").key(name), Part::FormTexture(texture.learned(None, None))));
     }
     parts
 }
@@ -260,24 +257,33 @@ impl Part {
 
 impl Wanted {
     fn item<T: Clone>(&self, item: Item<T>) -> Item<T> {
-        Item::read(item.into_inner(), self.place, self.moves.then(|| Arc::clone(&self.template)))
+        item.learned(self.place, self.moves.then(|| Arc::clone(&self.template)))
     }
 
     fn object(&self, item: Item<Object>) -> Item<Object> {
-        let object = within(item.into_inner(), &self.template.node, self.place);
-        Item::read(object, self.place, self.moves.then(|| Arc::clone(&self.template)))
+        self.item(within(item, &self.template.node, self.place))
+    }
+
+    fn list(&self, list: Objects) -> Objects {
+        let item = |item: Item<Object>| within(item, &self.template.node, self.place).learned(self.place, None);
+        list.into_inner().into_iter().map(item).collect()
     }
 }
 
 /// An object whose inner objects were read with it, and do not move by themselves.
-fn within(mut object: Object, node: &Node, place: Option<Place>) -> Object {
-    let inner = |(i, item): (usize, &Item<Object>)| {
-        let node = node.get("objects").and_then(|objects| objects.elements().get(i));
+fn within(mut object: Item<Object>, node: &Node, place: Option<Place>) -> Item<Object> {
+    if object.objects.is_none() {
+        return object;
+    }
+    let nodes = node.get("objects").map(Node::elements).unwrap_or_default();
+    let inner = |(i, item): (usize, Item<Object>)| {
+        let node = nodes.get(i);
         let place = node.and_then(|node| node.place).or(place);
-        let object = item.clone().into_inner();
-        Item::read(node.map_or_else(|| object.clone(), |node| within(object.clone(), node, place)), place, None)
+        let item = if let Some(node) = node { within(item, node, place) } else { item };
+        item.learned(place, None)
     };
-    object.objects = object.objects.map(|objects| objects.iter().enumerate().map(inner).collect());
+    let objects = object.quietly().objects.take();
+    object.quietly().objects = objects.map(|list| list.into_inner().into_iter().enumerate().map(inner).collect());
     object
 }
 
