@@ -24,6 +24,10 @@ struct Span {
 /// The parts that fit together, and what they become; or all that is wrong.
 pub(super) fn check<P: AsRef<Path>>(files: &[P], wanted: Wanted) -> Result<(Vec<Part>, Description), MergeError> {
     let mut complaints = Vec::new();
+    let refused = |complaints| {
+        let files = files.iter().map(|file| file.as_ref().display().to_string()).collect();
+        Err(MergeError { files, complaints })
+    };
     if files.is_empty() {
         complaints.push(Complaint::None);
     }
@@ -39,7 +43,7 @@ pub(super) fn check<P: AsRef<Path>>(files: &[P], wanted: Wanted) -> Result<(Vec<
     spans.sort_unstable();
     complaints.extend(doubled(&parts, &spans));
     let Some(first) = parts.iter().min_by_key(|part| (part.description().share.index, part.path())) else {
-        return Err(MergeError { complaints });
+        return refused(complaints);
     };
     let samples = first.description().samples;
     let coverage = Coverage::new(first.description(), &parts, &spans);
@@ -50,7 +54,7 @@ pub(super) fn check<P: AsRef<Path>>(files: &[P], wanted: Wanted) -> Result<(Vec<
         complaints.extend(unfinished.map(|file| Complaint::Unfinished { file }));
         complaints.push(Complaint::Missing(coverage.to_do(&parts)));
     }
-    if complaints.is_empty() { Ok((parts, description)) } else { Err(MergeError { complaints }) }
+    if complaints.is_empty() { Ok((parts, description)) } else { refused(complaints) }
 }
 
 fn name(part: &Part) -> String {

@@ -56,6 +56,8 @@ pub enum ToDo {
 /// Why parts cannot be merged.
 #[derive(Debug, thiserror::Error)]
 pub struct MergeError {
+    /// The parts, as the user named them.
+    pub files: Vec<String>,
     /// Every reason there is.
     pub complaints: Vec<Complaint>,
 }
@@ -77,7 +79,11 @@ impl MergeError {
 
 impl fmt::Display for MergeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the parts cannot be merged:")?;
+        match self.files.as_slice() {
+            [] => f.write_str("the parts cannot be merged:")?,
+            [only] => write!(f, "the part `{only}` cannot be merged:")?,
+            [first, others @ ..] => write!(f, "the parts `{first}` and {} more cannot be merged:", others.len())?,
+        }
         self.complaints.iter().try_for_each(|complaint| write!(f, "\n  {complaint}"))
     }
 }

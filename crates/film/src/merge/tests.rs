@@ -216,7 +216,7 @@ fn all_that_is_wrong_is_said_at_once() {
     files.remove(3);
     let tiles = Work::of(&description(REGION, SAMPLES)).share(14, 20).len();
     let expected = format!(
-        "the parts cannot be merged:
+        "the parts `0.jfilm` and 16 more cannot be merged:
   12.jfilm: is cut short: 700 of {} bytes are there
   13.jfilm: is of another picture than 0.jfilm: frame: 3 instead of 2.4000000000000004; scene: other instead of 5ce4e
   11.jfilm: is damaged: its head or index is not what was written
@@ -240,7 +240,7 @@ fn missing_samples_of_parts_that_are_no_shares_are_named() {
     let description = description(REGION, SAMPLES);
     let units: Vec<_> = (0..14).map(|tile| (tile, 0..48)).collect();
     let files = [folder.part("a.jfilm", &description, &units), folder.part("b.jfilm", &description, &[(1, 48..64)])];
-    let expected = "the parts cannot be merged:
+    let expected = "the parts `a.jfilm` and 1 more cannot be merged:
   still to do: samples 0..100 of 1 tile (the first at 64,32), samples 48..100 of 13 tiles (the first at 5,3), \
         samples 64..100 of 1 tile (the first at 16,3)";
     assert_eq!(folder.complaints(&files), expected);
@@ -254,8 +254,9 @@ fn the_same_file_twice_is_doubled() {
     let folder = Folder::new();
     let file = folder.share(0, 1);
     let tiles = Layout::new(REGION).tiles();
-    let expected =
-        format!("the parts cannot be merged:\n  0.jfilm: holds samples that 0.jfilm holds too, of {tiles} tiles");
+    let expected = format!(
+        "the parts `0.jfilm` and 1 more cannot be merged:\n  0.jfilm: holds samples that 0.jfilm holds too, of {tiles} tiles"
+    );
     assert_eq!(folder.complaints(&[file.clone(), file.clone()]), expected);
     assert!(Merge::open(&[file.clone(), file], Wanted::Part).is_err());
 }
@@ -286,7 +287,7 @@ fn parts_that_noise_ends_have_as_many_samples_as_they_needed() {
     assert!(Merge::open(&files, Wanted::Whole).unwrap().description().finished);
     let unfinished = Description { finished: false, ..half(1) };
     folder.part("1.jfilm", &unfinished, &units(1));
-    let expected = "the parts cannot be merged:
+    let expected = "the parts `0.jfilm` and 1 more cannot be merged:
   1.jfilm: is not finished; the same command goes on with it
   still to do: shard 1 of 2 (--shard 1/2)";
     assert_eq!(folder.complaints(&files), expected);
@@ -305,6 +306,13 @@ fn crops_are_parts_too() {
     };
     let files = [half("a.jfilm", Rect { width: 27, ..REGION }), half("b.jfilm", Rect { x: 32, width: 43, ..REGION })];
     assert_eq!(merged(&files), whole());
+}
+
+#[test]
+fn a_single_part_that_is_no_picture_is_named() {
+    let folder = Folder::new();
+    let message = folder.complaints(&[folder.share(1, 2)]);
+    assert_eq!(message, "the part `1.jfilm` cannot be merged:\n  still to do: shard 0 of 2 (--shard 0/2)");
 }
 
 #[test]
