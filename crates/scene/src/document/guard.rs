@@ -1,6 +1,6 @@
 //! What is checked before a text is parsed: its encoding, size, depth and number of values.
 
-use crate::path::Path;
+use crate::path::{Path, Step};
 use std::ops::Range;
 
 /// Largest scene file, in bytes.
@@ -70,16 +70,51 @@ pub fn check(text: &str) -> Result<(), Refused> {
         }
         if depth > MAX_DEPTH {
             let message = format!("arrays and objects are nested deeper than the limit of {MAX_DEPTH}");
-            return Err(Refused { at: i..i + 1, path: None, message, help: None });
+            return Err(Refused { at: i..i + 1, path: Some(path_after(text, i)), message, help: None });
         }
         if values > MAX_VALUES {
             let message = format!("the file holds more than the limit of {MAX_VALUES} values");
             let help = Some("put large meshes into files of their own (OBJ, PLY, STL)".into());
-            return Err(Refused { at: i..i + 1, path: None, message, help });
+            return Err(Refused { at: i..i + 1, path: Some(path_after(text, i)), message, help });
         }
         i += 1;
     }
     Ok(())
+}
+
+/// Path of the value that begins after the first `length` bytes of a JSON text.
+fn path_after(text: &str, length: usize) -> Path {
+    let bytes = text.as_bytes().get(..length).unwrap_or_default();
+    let (mut steps, mut key, mut i) = (Vec::new(), 0..0, 0);
+    while let Some(byte) = bytes.get(i) {
+        match byte {
+            b'"' => {
+                let end = skip_string(bytes, i);
+                key = i..end + 1;
+                i = end;
+            }
+            b'/' => i = skip_comment(bytes, i),
+            b'{' => steps.push(Step::Key(String::new())),
+            b'[' => steps.push(Step::Index(0)),
+            b']' | b'}' => drop(steps.pop()),
+            b':' | b',' => match steps.last_mut() {
+                Some(Step::Key(last)) if *byte == b':' => *last = unescaped(text.get(key.clone()).unwrap_or_default()),
+                Some(Step::Index(last)) => *last += 1,
+                _ => {}
+            },
+            _ => {}
+        }
+        i += 1;
+    }
+    steps.into_iter().fold(Path::root(), |mut path, step| {
+        path.push(step);
+        path
+    })
+}
+
+/// Text of a JSON string with its quotes.
+fn unescaped(quoted: &str) -> String {
+    serde_json::from_str(quoted).unwrap_or_else(|_| quoted.trim_matches('"').to_owned())
 }
 
 /// The position of the closing quote of the string that opens at `start`.
@@ -118,6 +153,13 @@ mod tests {
         assert_eq!(check(&quiet), Ok(()));
         let deep = format!("/* \" */ {}", "[".repeat(65));
         assert_eq!(check(&deep).map_err(|e| e.at), Err(72..73));
+    }
+
+    #[test]
+    fn refusals_name_the_place() {
+        let inner = format!("{{\"a\": [1, 2], \"\\u0062\": [0, {{\"c\": {}", "[".repeat(61));
+        let path = check(&format!("/* [ */ [{{}}, \"[\\\"\", {inner}")).unwrap_err().path.unwrap();
+        assert_eq!(path.to_string(), format!("[2].b[1].c{}", "[0]".repeat(60)));
     }
 
     #[test]

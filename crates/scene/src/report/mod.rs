@@ -184,7 +184,11 @@ fn locate(
         Some(file) => file.get_or_insert_with(|| parse(text, place.file).ok().map(|(tree, _)| tree)).as_ref(),
         None => None,
     };
-    let mut path = local.map(|local| local.path_of(place)).unwrap_or_default();
+    let Some(local) = local else {
+        // A file that cannot be parsed has no part in the merged scene: the path is its own.
+        return (Some(place), finding.path.as_ref().map(Path::to_string).unwrap_or_default());
+    };
+    let mut path = local.path_of(place);
     if let (Some((_, depth)), Some(full)) = (found, &finding.path) {
         full.steps().iter().skip(depth).for_each(|step| path.push(step.clone()));
     }

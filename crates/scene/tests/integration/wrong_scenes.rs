@@ -280,3 +280,10 @@ fn scenes_made_by_programs_are_checked_too() {
         .size(0, 10);
     insta::assert_snapshot!(wrong.check().to_string());
 }
+
+#[test]
+fn deep_nesting_in_an_included_file_names_the_place() {
+    let deep = format!(r#"{{"version": 1, "groups": {{"a": {}"#, "[".repeat(1000));
+    let report = report(&with(r#""include": "deep.json""#), &[("deep.json", deep.as_bytes())]);
+    assert!(report.contains("deep.json:1:94") && report.contains("at: groups.a[0][0]"), "{report}");
+}
