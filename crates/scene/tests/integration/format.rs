@@ -163,3 +163,19 @@ fn scenes_name_their_schema() {
     let error = Scene::from_json(r#"{"$schema": 7, "version": 1}"#, "test.json").map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("JSON Schema") && error.contains("found a number"), "{error}");
 }
+
+#[test]
+fn included_files_name_their_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("main.json"), r#"{"version": 1, "include": "ball.json"}"#).unwrap();
+    let included = |schema: &str| {
+        let ball = format!(r#"{{"$schema": {schema}, "version": 1, "objects": [{{"shape": "sphere"}}]}}"#);
+        fs::write(path("ball.json"), ball).unwrap();
+        Scene::load(path("main.json"))
+    };
+    let plain = scene(r#"{"version": 1, "objects": [{"shape": "sphere"}]}"#);
+    assert_eq!(included(r#""./scene.schema.json""#).unwrap().description, plain.description);
+    let error = included("7").map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("JSON Schema") && error.contains("ball.json:1:13"), "{error}");
+}
