@@ -34,7 +34,7 @@ const LINES: [(&str, &str); 8] = [
     ("obj", "info @"),
     ("png", "compare @ @"),
     ("jfilm", "merge @ -o a.png"),
-    ("jfilm", "render good.json --size 8x8 --samples 1 --samples-from @ -o a.png"),
+    ("jfilm", "render good.json --size 8x8 --samples-from @ -o a.png"),
     ("jfilm", "render good.json --size 8x8 --samples 1 --checkpoint @ -o a.png"),
 ];
 
