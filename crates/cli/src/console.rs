@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::ColorChoice;
+use juggler::math::message;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
 /// Writes a result. A reader that has gone away is no failure: it has seen enough.
@@ -18,6 +19,18 @@ pub fn print(text: &str) -> Result<(), Failure> {
 pub fn say(text: &str) {
     let line = format!("{}\n", text.trim_end_matches('\n'));
     let _ = io::stderr().lock().write_all(line.as_bytes());
+}
+
+/// Prints what the parser of command lines answers. Mistakes quote what was typed, which may be long. A closed pipe is
+/// no mistake.
+pub fn answer(error: &clap::Error) {
+    let told = error.render().to_string();
+    let shown = message::lines(&told);
+    if shown == told {
+        let _ = error.print();
+    } else {
+        say(&shown);
+    }
 }
 
 /// Whether standard error shows colors.

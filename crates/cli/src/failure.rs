@@ -3,6 +3,7 @@
 use juggler::Error;
 use juggler::film::{MergeError, PartError, ResumeError};
 use juggler::imaging::ImageError;
+use juggler::math::message;
 use juggler::scene::import::{Fault, ImportError};
 use juggler::scene::named::Unknown;
 use juggler::scene::{Problems, SceneError};
@@ -49,8 +50,8 @@ impl Failure {
         let label = if color { "\x1b[1;31merror\x1b[0m" } else { "error" };
         match self {
             Self::No => None,
-            Self::Different(message) => Some(message.clone()),
-            Self::Wrong(message) | Self::System(message) => Some(format!("{label}: {message}")),
+            Self::Different(message) => Some(message::lines(message)),
+            Self::Wrong(message) | Self::System(message) => Some(format!("{label}: {}", message::lines(message))),
             Self::Scene(problems) => Some(problems.render(color)),
             Self::Interrupted { kept: None, .. } => Some("interrupted".into()),
             Self::Interrupted { kept: Some(file), .. } => {

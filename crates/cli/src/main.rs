@@ -23,8 +23,8 @@ fn main() -> ExitCode {
     let args = match args::Args::parse_words(&words, console::color_choice()) {
         Ok(args) => args,
         Err(error) => {
-            // Help and version go to standard output, mistakes to standard error; a closed pipe is no mistake.
-            let _ = error.print();
+            // Help and version go to standard output, mistakes to standard error.
+            console::answer(&error);
             return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
         }
     };

@@ -1,4 +1,4 @@
-//! The words that every other crate speaks: points and directions, rays, boxes, transforms, colour,
+//! The words that every other crate speaks: points and directions, rays, boxes, transforms, colour, text of messages,
 //! and the few functions whose results must be the same bits on every machine.
 //!
 //! Only scalar [`glam`] types are used (`Vec3`, not `Vec3A`): their sums and products run in one fixed
@@ -11,6 +11,7 @@ pub mod frame;
 pub mod fun;
 pub mod hash;
 pub mod image;
+pub mod message;
 pub mod motion;
 pub mod quaternion;
 pub mod range;

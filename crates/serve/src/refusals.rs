@@ -1,5 +1,6 @@
 //! What was refused, one line each, and not more of them than somebody would read.
 
+use juggler::math::message::excerpt;
 use std::fmt::Display;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -41,13 +42,9 @@ impl Refusals {
         }
         window.lines = window.lines.saturating_add(1);
         if window.lines <= MOST {
-            (self.log)(&format!("refused: {who}: {}", cut(why)));
+            (self.log)(&format!("refused: {who}: {}", excerpt(why, LONGEST)));
         }
     }
-}
-
-fn cut(text: &str) -> String {
-    text.chars().map(|character| if character.is_control() { ' ' } else { character }).take(LONGEST).collect()
 }
 
 #[cfg(test)]
@@ -63,6 +60,6 @@ mod tests {
         (0..1000).for_each(|_| refusals.say("somebody", &"x\n".repeat(1000)));
         let lines = lines.lock().unwrap();
         assert_eq!(lines.len(), MOST as usize);
-        assert!(lines.iter().all(|line| line.len() < 300 && !line.contains('\n')));
+        assert!(lines.iter().all(|line| line.chars().count() < 300 && !line.contains('\n')));
     }
 }

@@ -13,7 +13,7 @@ use clap::Args;
 use juggler::film;
 use juggler::imaging::layered::{LayerName, layer_names};
 use juggler::imaging::{self, Facts, Format, regular};
-use juggler::math::Aabb;
+use juggler::math::{Aabb, message};
 use juggler::scene::{Compiled, Illuminance, Scene, import};
 use juggler::tracer::background::AnyBackground;
 use juggler::tracer::world::Geometry;
@@ -34,9 +34,14 @@ pub struct Info {
 impl Info {
     /// Prints what a picture says, or builds the world or mesh and prints what is in it.
     pub fn run(self) -> Result<(), Failure> {
+        let answer = self.answer()?;
+        console::print(&if self.json { answer } else { message::printable_lines(&answer) })
+    }
+
+    fn answer(&self) -> Result<String, Failure> {
         let path = Path::new(&self.scene);
         if import::Content::of_file(path).is_mesh() {
-            return console::print(&mesh::Report::of(&self.scene)?.text(self.json));
+            return Ok(mesh::Report::of(&self.scene)?.text(self.json));
         }
         let start = regular::first_bytes(path, 12).unwrap_or_default();
         let named = Format::from_path(path).ok().filter(|_| path.is_file());
@@ -44,17 +49,15 @@ impl Info {
             return self.picture(format);
         }
         if film::is_part(&start) {
-            return console::print(&part::text(path, self.json)?);
+            return part::text(path, self.json);
         }
         let scene = source::load(&self.scene, None)?;
         let compiled = scene.compile()?;
-        if self.json {
-            return console::print(&to_json(&self.scene, &scene, &compiled));
-        }
-        console::print(&to_words(&self.scene, &scene, &compiled))
+        let text = if self.json { to_json } else { to_words };
+        Ok(text(&self.scene, &scene, &compiled))
     }
 
-    fn picture(&self, format: Format) -> Result<(), Failure> {
+    fn picture(&self, format: Format) -> Result<String, Failure> {
         let Facts { width, height, mut metadata, .. } = imaging::inspect(Path::new(&self.scene))?;
         let layers = layer_names(Path::new(&self.scene))?;
         for (_, text) in metadata.iter_mut().filter(|(key, _)| key == "Command") {
@@ -67,21 +70,20 @@ impl Info {
                 "version": 1, "picture": self.scene, "format": name, "size": [width, height], "metadata": texts,
                 "layers": layers.iter().map(|layer| json!({"name": layer.name, "channels": layer.channels})).collect::<Vec<_>>(),
             });
-            return console::print(&json.to_string());
+            return Ok(json.to_string());
         }
         let texts = metadata.iter().map(|(key, text)| row(key, text));
         let keys = std::iter::once("layers").chain(std::iter::repeat(""));
         let layers = keys.zip(&layers).map(|(key, layer)| row(key, &layer_in_words(layer)));
         let head = [self.scene.clone(), row("picture", &format!("{width}x{height}, {format}"))];
         let lines = head.into_iter().chain(layers).chain(texts);
-        console::print(&lines.collect::<Vec<_>>().join("\n"))
+        Ok(lines.collect::<Vec<_>>().join("\n"))
     }
 }
 
-/// A row of what is told. Texts of files come without characters that a terminal would obey.
+/// A row of the answer: a key and its value.
 fn row(key: &str, value: &str) -> String {
-    let printable = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
-    format!("{key:12} {value}").chars().map(printable).collect()
+    format!("{key:12} {value}")
 }
 
 /// `albedo: R, G, B`; channels without the name of a layer stand alone.

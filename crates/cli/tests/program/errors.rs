@@ -230,3 +230,18 @@ fn errors_say_what_helps() {
         assert!(folder.bad(line, 3).contains("there is no folder `no`"), "{line}");
     }
 }
+
+#[test]
+fn long_names_are_shortened_and_terminals_obey_nothing() {
+    let folder = Folder::new();
+    let long = "y".repeat(20_000);
+    let message = folder.bad(&format!("render {long}"), 2);
+    assert!(message.contains("no built-in scene is called `yyy") && message.contains('…'), "{message}");
+    let message = folder.bad(&format!("render ball.json --size {long}"), 2);
+    assert!(message.contains("--size") && message.contains('…') && message.len() < 10_000, "{message}");
+    let message = folder.bad("render \u{1b}[31m\u{202e}", 2);
+    assert!(message.contains("`\u{fffd}[31m\u{fffd}`"), "{message}");
+    let scene = r#"{"version": 1, "title": "\u001b[31mred", "objects": [{"shape": "sphere"}]}"#;
+    fs::write(folder.path("red.json"), scene).unwrap();
+    assert!(folder.run("info red.json").stdout.starts_with("\u{fffd}[31mred\n"));
+}

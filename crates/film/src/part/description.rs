@@ -2,6 +2,7 @@
 
 use crate::share::whole_tiles;
 use juggler_imaging::Viewpoint;
+use juggler_math::message::{MAX_QUOTE, excerpt};
 use juggler_tracer::film::{BLOCK, Layout, Rect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -309,18 +310,15 @@ fn is_hash(text: &str) -> bool {
     !text.is_empty() && text.split(' ').all(hash)
 }
 
-/// A text of a file as it may stand in a message: not longer than a few lines, without characters that a terminal obeys.
+/// Text of a file as a message shows it.
 fn shown(text: &str) -> String {
-    const LONGEST: usize = 200;
     if text.is_empty() {
         return "nothing".to_owned();
     }
     if is_hash(text) {
         return "something else".to_owned();
     }
-    let printable = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
-    let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
-    text.chars().take(LONGEST).map(printable).chain(dots.chars()).collect()
+    excerpt(text, MAX_QUOTE)
 }
 
 fn size([width, height]: [u32; 2]) -> String {

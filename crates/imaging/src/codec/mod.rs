@@ -12,6 +12,7 @@ use crate::output::Destination;
 use crate::raster::{Encoding, Layout, Raster, Samples};
 use crate::tone::{Curve, Srgb, Tone};
 use crate::{Format, ImageError, Limits, Viewpoint};
+use juggler_math::message::excerpt;
 use juggler_math::{Image, Rgb};
 use std::io::{self, BufRead, Seek};
 
@@ -168,8 +169,7 @@ fn shown(text: &str) -> String {
     if text.chars().any(|c| c.is_control() || c == char::REPLACEMENT_CHARACTER) {
         return "bytes that are no text".to_owned();
     }
-    let dots = if text.chars().nth(LONGEST).is_some() { "..." } else { "" };
-    format!("`{}{dots}`", text.chars().take(LONGEST).collect::<String>())
+    format!("`{}`", excerpt(text, LONGEST))
 }
 
 /// What a reader reads from.

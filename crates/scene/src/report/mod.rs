@@ -2,6 +2,7 @@
 
 use crate::document::{Node, Place, Sources, parse};
 use crate::path::Path;
+use juggler_math::message;
 use std::collections::BTreeSet;
 use std::{fmt, io};
 
@@ -29,7 +30,8 @@ pub struct Finding {
 impl Finding {
     /// Something that leaves no picture.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, path: None, place: None, message: message.into(), help: None }
+        let message = message::line(&message.into());
+        Self { severity: Severity::Error, path: None, place: None, message, help: None }
     }
 
     /// Something that people should know.
@@ -53,15 +55,14 @@ impl Finding {
 
     /// What was probably meant.
     #[must_use]
-    pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
+    pub fn help(self, help: impl Into<String>) -> Self {
+        self.maybe_help(Some(help.into()))
     }
 
     /// What was probably meant, when something was.
     #[must_use]
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
-        self.help = help.or(self.help);
+        self.help = help.map(|help| message::line(&help)).or(self.help);
         self
     }
 

@@ -3,6 +3,7 @@
 use super::{Problem, Problems, Severity};
 use crate::document::{Place, Sources};
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+use juggler_math::message::{MAX_QUOTE, excerpt};
 use std::fmt::Write;
 
 /// Most problems that are written out in full.
@@ -54,7 +55,7 @@ fn group<'p>(problem: &'p Problem, sources: &'p Sources) -> Group<'p> {
         }
     }
     if !problem.path.is_empty() {
-        elements.push(Level::NOTE.with_name("at").message(problem.path.as_str()).into());
+        elements.push(Level::NOTE.with_name("at").message(excerpt(&problem.path, MAX_QUOTE)).into());
     }
     if let Some(help) = &problem.help {
         elements.push(Level::HELP.message(help.as_str()).into());

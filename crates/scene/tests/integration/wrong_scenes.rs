@@ -282,6 +282,25 @@ fn scenes_made_by_programs_are_checked_too() {
 }
 
 #[test]
+fn long_names_are_shortened() {
+    let long = "x".repeat(1_000_000);
+    for (text, told) in [
+        (object(&format!(r#"{{"shape": "sphere", "material": "{long}"}}"#)), "no material is called `xxx"),
+        (with(&format!(r#""{long}": 1"#)), "` is not known here"),
+        (object(&format!(r#"{{"shape": {{"mesh": {{"file": "{long}.ply"}}}}}}"#)), "x.ply`: this cannot be the name"),
+        (object(&format!(r#"{{"shape": {{"sphere": {{"radius": {}}}}}}}"#, "1".repeat(1_000_000))), "1` is too large"),
+        (with(&format!(r#""materials": {{"{long}": {{"fong": {{}}}}}}"#)), "materials.xxx"),
+        (
+            with(&format!(r#""materials": {{"{long}": {{"phong": {{}}}}}}, "groups": {{"a": [{{"material": "b"}}]}}"#)),
+            "known: `xxx",
+        ),
+    ] {
+        let report = report(&text, &[]);
+        assert!(report.contains(told) && report.contains('…') && report.len() < 10_000, "{told}: {}", report.len());
+    }
+}
+
+#[test]
 fn deep_nesting_in_an_included_file_names_the_place() {
     let deep = format!(r#"{{"version": 1, "groups": {{"a": {}"#, "[".repeat(1000));
     let report = report(&with(r#""include": "deep.json""#), &[("deep.json", deep.as_bytes())]);

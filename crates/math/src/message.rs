@@ -1,0 +1,84 @@
+//! Text of files and command lines inside messages: short, and without characters that a terminal obeys.
+
+/// Maximum number of characters of a name that a message quotes. File paths of usual length stay whole.
+pub const MAX_QUOTE: usize = 200;
+/// Maximum number of characters of a line of a message.
+pub const MAX_LINE: usize = 4000;
+
+/// Excerpt of at most `max` characters, on one line. A longer text loses its middle, which becomes `…`.
+/// Characters that a terminal obeys become U+FFFD.
+pub fn excerpt(text: &str, max: usize) -> String {
+    let length = text.chars().count();
+    if length <= max {
+        return text.chars().map(printable).collect();
+    }
+    let kept = max.saturating_sub(1);
+    let (head, tail) = (kept - kept / 2, kept / 2);
+    let middle = (max > 0).then_some('…');
+    text.chars().take(head).chain(middle).chain(text.chars().skip(length - tail)).map(printable).collect()
+}
+
+/// Line of a message: names between backticks keep [`MAX_QUOTE`] characters, the whole line [`MAX_LINE`]; characters
+/// that a terminal obeys, line breaks too, become U+FFFD.
+pub fn line(text: &str) -> String {
+    let pieces: Vec<&str> = text.split('`').collect();
+    // A backtick that nothing closes opens no quote.
+    let is_quote = |number: usize| number % 2 == 1 && number + 1 < pieces.len();
+    let pieces = pieces.iter().enumerate();
+    let pieces =
+        pieces.map(|(number, piece)| if is_quote(number) { excerpt(piece, MAX_QUOTE) } else { (*piece).into() });
+    excerpt(&pieces.collect::<Vec<String>>().join("`"), MAX_LINE)
+}
+
+/// Message of several lines, each as [`line`] has it.
+pub fn lines(text: &str) -> String {
+    text.split('\n').map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Whole text with U+FFFD in place of the characters that a terminal obeys. Lines stay lines.
+pub fn printable_lines(text: &str) -> String {
+    text.chars().map(|character| if character == '\n' { character } else { printable(character) }).collect()
+}
+
+/// The character, or U+FFFD where a terminal would obey it: control characters, and those that turn the direction of
+/// writing, which make a name look like another.
+fn printable(character: char) -> char {
+    let turns = matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    if character.is_control() || turns { char::REPLACEMENT_CHARACTER } else { character }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn excerpts_lose_their_middle() {
+        assert_eq!(excerpt("abcdef", 6), "abcdef");
+        assert_eq!(excerpt("abcdefg", 6), "abc…fg");
+        assert_eq!(excerpt("äöüßéèê", 5), "äö…èê");
+        assert_eq!(["ab", "abc"].map(|text| excerpt(text, 1)), ["…", "…"]);
+        assert_eq!(excerpt("ab", 0), "");
+    }
+
+    #[test]
+    fn terminals_have_nothing_to_obey() {
+        assert_eq!(excerpt("a\u{1b}[31m\nb\u{202e}gnp.exe", 40), "a\u{fffd}[31m\u{fffd}b\u{fffd}gnp.exe");
+        assert_eq!(printable_lines("a\u{7}\nb"), "a\u{fffd}\nb");
+    }
+
+    #[test]
+    fn messages_keep_their_words_and_shorten_names() {
+        let long = "x".repeat(1_000_000);
+        let quote = excerpt(&long, MAX_QUOTE);
+        assert_eq!(quote.chars().count(), MAX_QUOTE);
+        assert_eq!(
+            line(&format!("`{long}` stands in `a` and `{long}`")),
+            format!("`{quote}` stands in `a` and `{quote}`")
+        );
+        assert_eq!(line(&format!("never closed: `{long}")).chars().count(), MAX_LINE);
+        assert_eq!(line(&"`\n".repeat(1_000_000)).chars().count(), MAX_LINE);
+        let plain = "no material is called `red`, did you mean `bed`?\nhelp: `juggler check` tells more";
+        assert_eq!(lines(plain), plain);
+        assert_eq!(lines(&format!("a `{long}`\nb")), format!("a `{quote}`\nb"));
+    }
+}
