@@ -11,6 +11,7 @@ use crate::integrator::IntegratorChoice;
 use crate::item::Item;
 use crate::motion::Tracks;
 use crate::path::Path;
+use crate::shared::Shared;
 use juggler_imaging::Tone;
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::shape::AnyShape;
@@ -50,18 +51,14 @@ impl Fingerprint {
         parts.insert("version", &digest_of(version));
         // The tone curve decides no pixel, but files on disk carry the hash of the default one.
         parts.insert("tone", &digest_of(&Tone::default()));
-        parts.insert_list("camera", &camera_of(scene), usize::from(camera_of(scene).is_some()));
-        parts.insert_list("background", background, usize::from(background.is_some()));
-        parts.insert_list(
-            "background_light_group",
-            background_light_group,
-            usize::from(background_light_group.is_some()),
-        );
-        parts.insert_list("textures", textures, textures.len());
-        parts.insert_list("materials", materials, materials.len());
-        parts.insert_list("groups", groups, groups.len());
-        parts.insert_list("lights", lights, lights.len());
-        parts.insert_list("objects", objects, objects.len());
+        parts.insert_some("camera", camera_of(scene));
+        parts.insert_some("background", background.as_ref());
+        parts.insert_some("background_light_group", background_light_group.as_ref());
+        parts.insert_section("textures", textures, textures.is_empty());
+        parts.insert_section("materials", materials, materials.is_empty());
+        parts.insert_section("groups", groups, groups.is_empty());
+        parts.insert_section("lights", lights, lights.is_empty());
+        parts.insert_section("objects", objects, objects.is_empty());
         if !(tracks.objects.is_empty() && tracks.groups.is_empty() && tracks.lights.is_empty()) {
             parts.insert("motion", &digest_of(&(&tracks.objects, &tracks.groups, &tracks.lights)));
         }
@@ -81,10 +78,17 @@ impl Fingerprint {
         part.push_str(value);
     }
 
-    /// Adds the hash of a part of the scene that has `count` entries; a part without entries is left out.
-    fn insert_list(&mut self, name: &str, part: &impl Serialize, count: usize) {
-        if count > 0 {
+    /// Adds the hash of a part of the scene, if the part is there.
+    fn insert_some(&mut self, name: &str, part: Option<&impl Serialize>) {
+        if let Some(part) = part {
             self.insert(name, &digest_of(part));
+        }
+    }
+
+    /// Adds the hash of a section, which is worked out once for all scenes that share the section, unless it is empty.
+    fn insert_section(&mut self, name: &str, section: &Shared<impl Serialize>, is_empty: bool) {
+        if !is_empty {
+            self.insert(name, section.digest(|section| digest_of(section)));
         }
     }
 

@@ -5,11 +5,29 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A value shared by the copies of a scene (copy on write). Reading goes straight to the value; the first change
 /// through [`DerefMut`] copies the value if another copy of the scene holds it too.
-pub struct Shared<T>(Arc<T>);
+pub struct Shared<T>(Arc<Kept<T>>);
+
+struct Kept<T> {
+    value: T,
+    /// A hash of the value, once somebody has asked for it.
+    digest: OnceLock<String>,
+}
+
+impl<T: Clone> Clone for Kept<T> {
+    fn clone(&self) -> Self {
+        self.value.clone().into()
+    }
+}
+
+impl<T> From<T> for Kept<T> {
+    fn from(value: T) -> Self {
+        Self { value, digest: OnceLock::new() }
+    }
+}
 
 impl<T> Shared<T> {
     /// Whether both are the very same value in memory.
@@ -22,7 +40,12 @@ impl<T> Shared<T> {
     where
         T: Clone,
     {
-        Arc::unwrap_or_clone(self.0)
+        Arc::unwrap_or_clone(self.0).value
+    }
+
+    /// The hash of the value, worked out once.
+    pub(crate) fn digest(&self, of: impl FnOnce(&T) -> String) -> &str {
+        self.0.digest.get_or_init(|| of(&self.0.value))
     }
 }
 
@@ -34,13 +57,13 @@ impl<T> Clone for Shared<T> {
 
 impl<T: Default> Default for Shared<T> {
     fn default() -> Self {
-        Self(Arc::default())
+        Self::from(T::default())
     }
 }
 
 impl<T> From<T> for Shared<T> {
     fn from(value: T) -> Self {
-        Self(Arc::new(value))
+        Self(Arc::new(value.into()))
     }
 }
 
@@ -57,13 +80,15 @@ impl<T> Deref for Shared<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
-        &self.0
+        &self.0.value
     }
 }
 
 impl<T: Clone> DerefMut for Shared<T> {
     fn deref_mut(&mut self) -> &mut T {
-        Arc::make_mut(&mut self.0)
+        let kept = Arc::make_mut(&mut self.0);
+        kept.digest = OnceLock::new();
+        &mut kept.value
     }
 }
 
@@ -81,19 +106,19 @@ where
 
 impl<T: PartialEq> PartialEq for Shared<T> {
     fn eq(&self, other: &Self) -> bool {
-        self.is_same(other) || self.0 == other.0
+        self.is_same(other) || **self == **other
     }
 }
 
 impl<T: fmt::Debug> fmt::Debug for Shared<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
+        (**self).fmt(f)
     }
 }
 
 impl<T: Serialize> Serialize for Shared<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.0.serialize(serializer)
+        (**self).serialize(serializer)
     }
 }
 

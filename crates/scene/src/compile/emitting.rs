@@ -58,7 +58,7 @@ impl<'s> Search<'s> {
         let emits = object.material.as_ref().map_or(inherited, |material| self.emits(material));
         let mut count = match &object.shape {
             _ if !emits => 0,
-            Some(AnyShape::Mesh(mesh)) => (mesh.triangles.len() as u64).max(1),
+            Some(AnyShape::Mesh(mesh)) => (mesh.arrays().triangles.len() as u64).max(1),
             _ => shapes(object),
         };
         if let Some(group) = &object.group {

@@ -66,7 +66,7 @@ impl Needs {
                 self.material(material);
             }
             if let Some(AnyShape::Mesh(mesh)) = &object.shape {
-                self.triangles = self.triangles.saturating_add(mesh.triangles.len() as u64);
+                self.triangles = self.triangles.saturating_add(mesh.arrays().triangles.len() as u64);
                 let path = path.key("shape").key("mesh").join("file");
                 let file = mesh.file.as_ref().map(|file| files.locate(&path, file));
                 self.files.extend(file.and_then(|file| std::fs::canonicalize(file).ok()));

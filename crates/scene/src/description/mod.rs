@@ -226,7 +226,7 @@ impl Description {
         let mut findings = Vec::new();
         self.each_item(&mut |at, item| {
             if is_wanted(item) {
-                findings.extend(validate::item(&item.json().into(), &at.into(), at, Known::Scene(self)).all());
+                findings.extend(validate::item(&item.outline().into(), &at.into(), at, Known::Scene(self)).all());
             }
         });
         findings

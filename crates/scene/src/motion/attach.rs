@@ -1,13 +1,12 @@
 //! A scene that was read from a text learns of its items where they were written and how they move.
 
-use super::{AnyItem, Given, ListForm, Wanted, inside, with_trail};
+use super::{AnyItem, Described, Given, ListForm, Wanted, inside, with_trail};
 use crate::animate::{Changing, is_worked_out};
 use crate::description::{Description, Named, Objects, Written};
 use crate::document::{Node, Value};
 use crate::item::{Item, Template};
 use crate::path::{Path, Step, Trail};
 use crate::{Object, animate};
-use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
 use std::sync::Arc;
@@ -95,7 +94,7 @@ impl Attaching<'_> {
         }
     }
 
-    fn named<T: Serialize + Clone>(&mut self, map: &mut Named<T>, node: Option<&Node>, at: &Trail<'_>) {
+    fn named<T: Described>(&mut self, map: &mut Named<T>, node: Option<&Node>, at: &Trail<'_>) {
         for (name, item) in map.iter_mut() {
             self.item(item, node.and_then(|node| node.get(name)), &at.key(name));
         }

@@ -23,12 +23,18 @@ pub(crate) use settle::settled;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};
 pub(crate) use write::{head, node, object_node, written};
 
-use crate::description::{Description, Objects};
+use crate::Object;
+use crate::description::{Backdrop, Description, Objects, Render};
 use crate::document::{Node, Place};
 use crate::item::{Item, Template};
 use crate::path::{Path, Step, Trail};
 use crate::shared::Shared;
+use juggler_imaging::Tone;
+use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
+use juggler_tracer::material::AnyMaterial;
+use juggler_tracer::shape::AnyShape;
+use juggler_tracer::texture::AnyTexture;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -70,13 +76,43 @@ pub(crate) trait AnyItem {
     fn is_changed(&self) -> bool;
     /// Its value as JSON.
     fn json(&self) -> serde_json::Value;
+    /// The same to be checked: without the arrays of meshes, which have checks of their own.
+    fn outline(&self) -> serde_json::Value;
     /// As [`Item::learn`].
     fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>);
     /// As [`Item::set_template`].
     fn set_template(&mut self, template: Option<Arc<Template>>);
 }
 
-impl<T: Serialize + Clone> AnyItem for Item<T> {
+/// The value of an item.
+pub(crate) trait Described: Serialize + Clone {
+    /// As [`AnyItem::outline`].
+    fn outline(&self) -> serde_json::Value {
+        serde_json::to_value(self).unwrap_or_default()
+    }
+}
+
+impl Described for Render {}
+impl Described for Tone {}
+impl Described for Backdrop {}
+impl Described for AnyCamera {}
+impl Described for AnyTexture {}
+impl Described for AnyMaterial {}
+impl Described for AnyLight {}
+
+impl Described for Object {
+    fn outline(&self) -> serde_json::Value {
+        let mut outline = self.clone();
+        if let Some(AnyShape::Mesh(mesh)) = &mut outline.shape {
+            mesh.clear_arrays();
+        }
+        // The objects within are checked by themselves.
+        outline.objects = outline.objects.map(|_| Objects::default());
+        serde_json::to_value(outline).unwrap_or_default()
+    }
+}
+
+impl<T: Described> AnyItem for Item<T> {
     fn template(&self) -> Option<&Arc<Template>> {
         self.template()
     }
@@ -91,6 +127,10 @@ impl<T: Serialize + Clone> AnyItem for Item<T> {
 
     fn json(&self) -> serde_json::Value {
         serde_json::to_value(&**self).unwrap_or_default()
+    }
+
+    fn outline(&self) -> serde_json::Value {
+        Described::outline(&**self)
     }
 
     fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>) {
@@ -125,7 +165,7 @@ impl Description {
 
     /// The item that holds the value at a path, and how many steps of the path lead to the item.
     pub(crate) fn item_of(&self, path: &Path) -> Option<(&dyn AnyItem, usize)> {
-        fn any<T: Serialize + Clone>(item: &Item<T>) -> &dyn AnyItem {
+        fn any<T: Described>(item: &Item<T>) -> &dyn AnyItem {
             item
         }
         let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
@@ -146,7 +186,7 @@ impl Description {
 
     /// The item at a path, for what the scene knows of it beside its value.
     pub(crate) fn item_mut(&mut self, path: &Path) -> Option<&mut dyn AnyItem> {
-        fn any<T: Serialize + Clone>(item: Option<&mut Item<T>>) -> Option<&mut dyn AnyItem> {
+        fn any<T: Described>(item: Option<&mut Item<T>>) -> Option<&mut dyn AnyItem> {
             Some(item?)
         }
         let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
@@ -201,7 +241,7 @@ impl Description {
     }
 }
 
-fn each_object(objects: &[Item<crate::Object>], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
+fn each_object(objects: &[Item<Object>], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
     for (i, object) in objects.iter().enumerate() {
         let at = at.index(i);
         if let Some(inner) = &object.objects {
@@ -219,7 +259,7 @@ fn list_among<'s>(objects: &'s mut Objects, steps: &[Step]) -> Option<(&'s mut O
     }
 }
 
-fn object_of<'s>(objects: &'s [Item<crate::Object>], steps: &[Step], depth: usize) -> Option<(&'s dyn AnyItem, usize)> {
+fn object_of<'s>(objects: &'s [Item<Object>], steps: &[Step], depth: usize) -> Option<(&'s dyn AnyItem, usize)> {
     let [Step::Index(i), rest @ ..] = steps else { return None };
     let object = objects.get(*i)?;
     let inner = match rest {

@@ -20,20 +20,20 @@ use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use crease::Creases;
+use described::Described;
 use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
 use prepared::Prepared;
-use schemars::JsonSchema;
 use serde::Deserialize;
 use std::sync::Arc;
 
 mod crease;
 mod data;
 mod deforming;
+mod described;
 mod many;
 mod morph;
 mod prepared;
-mod written;
 
 pub use data::MeshData;
 pub use morph::Morph;
@@ -42,45 +42,33 @@ pub use morph::Morph;
 /// counter-clockwise.
 ///
 /// Surface coordinates: those of `uvs`; without them (0, 0), (1, 0) and (0, 1) at the corners of each triangle.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(default)]
+///
+/// Clones share the arrays and, once prepared, the hierarchy.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(from = "Described")]
 pub struct Mesh {
-    /// A model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays below.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// A model file (PLY, OBJ, STL), relative to the scene file, instead of arrays.
     pub file: Option<String>,
-    /// Corner positions in scene units.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(with = "Vec<[f32; 3]>")]
-    pub positions: Vec<Vec3>,
-    /// Three numbers a triangle, each the place of a corner in `positions`, counted from 0.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub triangles: Vec<[u32; 3]>,
-    /// Shading normals, blended over each triangle: none, or one per position. A zero one counts as missing.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(with = "Vec<[f32; 3]>")]
-    pub normals: Vec<Vec3>,
-    /// Surface coordinates: none, or one per position.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(with = "Vec<[f32; 2]>")]
-    pub uvs: Vec<Vec2>,
-    /// Greatest angle between the normals of two neighboring triangles whose edge is shaded smoothly, in degrees, 0 to 180:
-    /// 30 to 60 for machine parts, 180 for a wholly smooth surface. Without it a mesh without `normals` is shaded flat. It has
-    /// no effect on a mesh with `normals`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = 180))]
+    /// Corners and triangles. Once prepared, morphs are blended in, and normals added where creases ask for them.
+    arrays: Arc<MeshData>,
+    /// Greatest angle between the normals of two neighboring triangles whose edge is shaded smoothly, in degrees.
     pub crease_angle_degrees: Option<f32>,
     /// Other places that its corners go to, each as far as its weight says.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub morphs: Vec<Morph>,
-    /// What [`Shape::prepare`] makes of the arrays above, which it empties: clones then share it.
-    #[serde(skip)]
+    /// What [`Shape::prepare`] makes of the arrays.
     prepared: Option<Arc<Prepared>>,
 }
 
 impl From<MeshData> for Mesh {
     fn from(data: MeshData) -> Self {
-        let MeshData { positions, triangles, normals, uvs } = data;
-        Self { positions, triangles, normals, uvs, ..Self::default() }
+        Arc::new(data).into()
+    }
+}
+
+/// The arrays are shared, not copied.
+impl From<Arc<MeshData>> for Mesh {
+    fn from(arrays: Arc<MeshData>) -> Self {
+        Self { arrays, ..Self::default() }
     }
 }
 
@@ -92,23 +80,23 @@ impl Mesh {
     /// use juggler_tracer::shape::Mesh;
     /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// let mesh = Mesh::from_triangles(positions.map(Into::into), [[0, 1, 2]]).with_uvs([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into));
-    /// assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (1, 3));
+    /// assert_eq!((mesh.arrays().triangles.len(), mesh.arrays().uvs.len()), (1, 3));
     /// ```
     pub fn from_triangles(positions: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
-        Self { positions: positions.into(), triangles: triangles.into(), ..Self::default() }
+        MeshData { positions: positions.into(), triangles: triangles.into(), ..MeshData::default() }.into()
     }
 
     /// Sets the shading normals: one per position, object space, of any length.
     #[must_use]
     pub fn with_normals(mut self, normals: impl Into<Vec<Vec3>>) -> Self {
-        self.normals = normals.into();
+        self.change().normals = normals.into();
         self
     }
 
     /// Sets the surface coordinates: one per position.
     #[must_use]
     pub fn with_uvs(mut self, uvs: impl Into<Vec<Vec2>>) -> Self {
-        self.uvs = uvs.into();
+        self.change().uvs = uvs.into();
         self
     }
 
@@ -131,12 +119,14 @@ impl Mesh {
             let creases = Creases::new(first, angle)?;
             keys = keys.into_iter().map(|key| creases.smoothed(key)).collect();
         }
-        Ok(Self { prepared: Some(Arc::new(Prepared::moving(keys)?)), crease_angle_degrees, ..Self::default() })
+        let prepared = Prepared::moving(keys)?;
+        let (arrays, prepared) = (Arc::clone(prepared.arrays()), Some(Arc::new(prepared)));
+        Ok(Self { arrays, prepared, crease_angle_degrees, ..Self::default() })
     }
 
     /// Takes what the file holds. An error when the description has arrays of its own beside the file.
     pub fn load(&mut self, data: MeshData) -> Result<(), InvalidShape> {
-        if !self.positions.is_empty() || !self.triangles.is_empty() {
+        if !self.arrays.positions.is_empty() || !self.arrays.triangles.is_empty() {
             return Err(check::invalid("file", "a mesh has either `file` or `positions` and `triangles`, not both"));
         }
         let (file, morphs) = (self.file.take(), std::mem::take(&mut self.morphs));
@@ -147,10 +137,7 @@ impl Mesh {
     /// The arrays, corners blended with `morphs`: for each of [`Mesh::morphs`] the places of all corners. An error
     /// names the field at fault.
     pub fn blended(&self, morphs: &[&[Vec3]]) -> Result<MeshData, InvalidShape> {
-        let mut data = match self.data() {
-            Some(data) => data.clone(),
-            None => self.clone().take_data(),
-        };
+        let mut data = MeshData::clone(&self.arrays);
         let targets: Vec<(&[Vec3], f32)> =
             morphs.iter().zip(&self.morphs).map(|(positions, morph)| (*positions, morph.weight)).collect();
         morph::blend(&mut data, &targets)?;
@@ -175,7 +162,7 @@ impl Mesh {
 
     /// The arrays, once prepared.
     pub fn data(&self) -> Option<&MeshData> {
-        self.prepared.as_deref().map(Prepared::data)
+        self.prepared.as_deref().map(|prepared| &**prepared.arrays())
     }
 
     /// What is odd about the mesh and yet no error, in words: triangles that were ignored.
@@ -187,34 +174,47 @@ impl Mesh {
         }
     }
 
-    fn take_data(&mut self) -> MeshData {
-        MeshData {
-            positions: std::mem::take(&mut self.positions),
-            triangles: std::mem::take(&mut self.triangles),
-            normals: std::mem::take(&mut self.normals),
-            uvs: std::mem::take(&mut self.uvs),
-        }
+    /// Corners and triangles: those that the mesh was given or, once prepared, those that are met by rays. Empty for a mesh
+    /// in a file.
+    pub fn arrays(&self) -> &Arc<MeshData> {
+        &self.arrays
+    }
+
+    /// Lets go of corners, triangles and morphs, so that the rest can be looked at alone.
+    pub fn clear_arrays(&mut self) {
+        (self.arrays, self.prepared) = (Arc::default(), None);
+        self.morphs.iter_mut().for_each(|morph| morph.positions.clear());
+    }
+
+    /// The arrays to be changed: what was prepared is out of date.
+    fn change(&mut self) -> &mut MeshData {
+        self.prepared = None;
+        Arc::make_mut(&mut self.arrays)
     }
 }
 
 impl Shape for Mesh {
     fn prepare(&mut self) -> Result<(), InvalidShape> {
-        if self.prepared.is_some() && self.triangles.is_empty() {
+        if self.prepared.is_some() {
             return Ok(());
         }
-        if self.triangles.is_empty() {
+        if self.arrays.triangles.is_empty() {
             return Err(match &self.file {
                 Some(file) => check::invalid("file", format!("`file` \"{file}\" holds no triangles")),
                 None => check::invalid("triangles", "a mesh must have `file`, or `positions` and `triangles`"),
             });
         }
-        let mut data = self.take_data();
-        let morphs: Vec<(&[Vec3], f32)> = self.morphs.iter().map(|m| (m.positions.as_slice(), m.weight)).collect();
-        morph::blend(&mut data, &morphs)?;
-        if let Some(angle) = self.crease_angle_degrees.filter(|_| data.normals.is_empty()) {
-            data = Creases::new(&data, angle)?.smoothed(data);
+        let mut arrays = Arc::clone(&self.arrays);
+        if !self.morphs.is_empty() {
+            let morphs: Vec<(&[Vec3], f32)> = self.morphs.iter().map(|m| (m.positions.as_slice(), m.weight)).collect();
+            morph::blend(Arc::make_mut(&mut arrays), &morphs)?;
         }
-        self.prepared = Some(Arc::new(Prepared::new(data)?));
+        if let Some(angle) = self.crease_angle_degrees.filter(|_| arrays.normals.is_empty()) {
+            let creases = Creases::new(&arrays, angle)?;
+            arrays = Arc::new(creases.smoothed(Arc::unwrap_or_clone(arrays)));
+        }
+        self.prepared = Some(Arc::new(Prepared::new(Arc::clone(&arrays))?));
+        self.arrays = arrays;
         Ok(())
     }
 
@@ -248,7 +248,7 @@ impl Shape for Mesh {
         let prepared = self.prepared.as_ref()?;
         let (index, rest) = pick(prepared.running_areas(), u.x)?;
         let at = warp::uniform_triangle(Vec2::new(rest, u.y)).truncate().as_dvec2();
-        let (point, normal) = prepared.data().facet(index)?.point(at);
+        let (point, normal) = prepared.arrays().facet(index)?.point(at);
         area_sample(from, point, normal, prepared.area())
     }
 
@@ -257,7 +257,7 @@ impl Shape for Mesh {
     }
 
     fn triangles(&self) -> usize {
-        self.data().map_or(self.triangles.len(), |data| data.triangles.len())
+        self.arrays.triangles.len()
     }
 
     fn heap_bytes(&self) -> usize {

@@ -8,12 +8,12 @@ use juggler_bvh::{Quality, SimdLevel, TriangleBvh, TriangleHit};
 use juggler_math::{Aabb, Ray};
 use rayon::prelude::*;
 use std::fmt;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// A checked mesh with its hierarchy.
 pub struct Prepared {
     /// As it is when the shutter opens.
-    data: MeshData,
+    arrays: Arc<MeshData>,
     tree: Tree,
     bounds: Aabb,
     area: f64,
@@ -65,11 +65,11 @@ impl Extent {
 
 impl Prepared {
     /// Checks the arrays and builds the hierarchy.
-    pub fn new(data: MeshData) -> Result<Self, InvalidShape> {
-        let extent = checked(&data)?;
-        let bvh = TriangleBvh::build(&data.positions, &data.triangles, Quality::Balanced)
+    pub fn new(arrays: Arc<MeshData>) -> Result<Self, InvalidShape> {
+        let extent = checked(&arrays)?;
+        let bvh = TriangleBvh::build(&arrays.positions, &arrays.triangles, Quality::Balanced)
             .map_err(|error| invalid("triangles", error.to_string()))?;
-        Ok(Self::with(data, Tree::Still(Box::new(bvh)), extent))
+        Ok(Self::with(arrays, Tree::Still(Box::new(bvh)), extent))
     }
 
     /// The same for a mesh that is as these say at even times while the shutter is open, all with the same triangles.
@@ -77,15 +77,15 @@ impl Prepared {
         for key in &keys {
             key.check()?;
         }
-        let Some(data) = keys.first().cloned() else { return Self::new(MeshData::default()) };
+        let Some(data) = keys.first().cloned() else { return Self::new(Arc::default()) };
         let extent = checked(&data)?;
         let tree = Deforming::new(keys)?;
         let extent = Extent { bounds: tree.bounds(), ..extent };
-        Ok(Self::with(data, Tree::Moving(tree), extent))
+        Ok(Self::with(Arc::new(data), Tree::Moving(tree), extent))
     }
 
-    fn with(data: MeshData, tree: Tree, Extent { bounds, area, degenerate }: Extent) -> Self {
-        Self { data, tree, bounds, area, degenerate, areas: OnceLock::new() }
+    fn with(arrays: Arc<MeshData>, tree: Tree, Extent { bounds, area, degenerate }: Extent) -> Self {
+        Self { arrays, tree, bounds, area, degenerate, areas: OnceLock::new() }
     }
 
     /// The same for another vector unit.
@@ -94,7 +94,7 @@ impl Prepared {
             Tree::Still(bvh) => Tree::Still(Box::new(TriangleBvh::clone(bvh).with_simd_level(level))),
             Tree::Moving(tree) => Tree::Moving(tree.with_simd_level(level)),
         };
-        Self { data: self.data.clone(), tree, areas: OnceLock::new(), ..*self }
+        Self { arrays: Arc::clone(&self.arrays), tree, areas: OnceLock::new(), ..*self }
     }
 
     /// The nearest hit at the ray's time.
@@ -116,7 +116,7 @@ impl Prepared {
     /// A triangle as it is at a time.
     pub fn facet(&self, triangle: usize, time: f32) -> Option<Facet> {
         match &self.tree {
-            Tree::Still(_) => self.data.facet(triangle),
+            Tree::Still(_) => self.arrays.facet(triangle),
             Tree::Moving(tree) => tree.facet(triangle, time),
         }
     }
@@ -138,8 +138,8 @@ impl Prepared {
     }
 
     /// The arrays.
-    pub fn data(&self) -> &MeshData {
-        &self.data
+    pub fn arrays(&self) -> &Arc<MeshData> {
+        &self.arrays
     }
 
     /// A box around every triangle that has an area, wherever it comes.
@@ -161,7 +161,7 @@ impl Prepared {
     pub fn running_areas(&self) -> &[f64] {
         self.areas.get_or_init(|| {
             let mut sum = 0.0;
-            let facets = (0..self.data.triangles.len()).filter_map(|triangle| self.data.facet(triangle));
+            let facets = (0..self.arrays.triangles.len()).filter_map(|triangle| self.arrays.facet(triangle));
             let running = facets.map(|facet| {
                 sum += facet.area();
                 sum
@@ -176,7 +176,7 @@ impl Prepared {
             Tree::Still(_) => &[],
             Tree::Moving(tree) => tree.keys(),
         };
-        let arrays: usize = std::iter::once(&self.data).chain(later).map(bytes).sum();
+        let arrays: usize = std::iter::once(&*self.arrays).chain(later).map(bytes).sum();
         size_of::<Self>() + arrays + size_of_val(self.areas.get().map_or(&[][..], Vec::as_slice))
     }
 }
@@ -203,12 +203,12 @@ impl PartialEq for Prepared {
             Tree::Still(_) => Vec::new(),
             Tree::Moving(tree) => tree.keys().to_vec(),
         };
-        self.data == other.data && keys(self) == keys(other)
+        self.arrays == other.arrays && keys(self) == keys(other)
     }
 }
 
 impl fmt::Debug for Prepared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} triangles", self.data.triangles.len())
+        write!(f, "{} triangles", self.arrays.triangles.len())
     }
 }
