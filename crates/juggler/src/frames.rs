@@ -73,7 +73,7 @@ fn frame(
     frames: f64,
 ) -> Result<(Frame, String), Error> {
     let there = settings.apply(&scene.later(frames)?)?;
-    let compiled = if there.has_world_of(here) { there.compile_with(compiled)? } else { there.compile()? };
+    let compiled = there.compile_after(here, compiled)?;
     let [width, height] = there.description.render.size;
     let camera = compiled.shot(UVec2::new(width, height)).map_err(|error| Error::Settings(error.to_string()))?;
     let mut fingerprint = there.fingerprint();

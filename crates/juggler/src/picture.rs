@@ -71,10 +71,11 @@ impl Picture {
         Self::of(scene, &wished, settings, compiled)
     }
 
-    /// The same with the world of this picture, which must be that of the scene too: [`Scene::has_world_of`].
-    pub fn again(&self, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
-        let wished = settings.apply(scene)?;
-        let compiled = wished.compile_with(&self.compiled)?;
+    /// The same, with what still serves of this picture's world, which was made of the scene `before`
+    /// ([`Scene::compile_after`]).
+    pub fn after(&self, before: &Scene, scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        let (wished, before) = (settings.apply(scene)?, settings.apply(before)?);
+        let compiled = wished.compile_after(&before, &self.compiled)?;
         Self::of(scene, &wished, settings, compiled)
     }
 

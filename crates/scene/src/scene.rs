@@ -1,7 +1,7 @@
 //! A scene as programs use it: read or built, checked, compiled.
 
 use crate::SceneError;
-use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Needs, light_files, pictures};
+use crate::compile::{self, Assembly, Compiled, Files, Illuminance, Library, Needs, areas, light_files, pictures};
 use crate::description::{Description, described};
 use crate::document::{Document, Node, Place, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
@@ -198,20 +198,42 @@ impl Scene {
         Ok(assembly.compile((*self.description.render).clone(), problems))
     }
 
-    /// Compiles the scene with the world of an earlier compilation, which must be this scene's too:
-    /// [`Scene::has_world_of`].
-    pub fn compile_with(&self, earlier: &Compiled) -> Result<Compiled, SceneError> {
+    /// Builds the world, with what still serves of an earlier compilation of the scene `before`: all of the world when the same
+    /// stands in both, its objects and their hierarchies when materials, lights or the background differ. The result is that
+    /// of [`Scene::compile`], bit for bit.
+    pub fn compile_after(&self, before: &Self, earlier: &Compiled) -> Result<Compiled, SceneError> {
         let (tracks, wrong) = self.tracks();
-        let (cameras, course, findings) = compile::look_at(&self.description, &tracks, &earlier.bounds);
+        let found = if self.has_world_of(before) {
+            let (cameras, course, findings) = compile::look_at(&self.description, &tracks, &earlier.bounds);
+            let settings = (*self.description.render).clone();
+            let integrator = self.integrator_choice();
+            Some((Compiled { cameras, course, settings, integrator, ..earlier.clone() }, findings))
+        } else if self.has_objects_of(before) {
+            compile::relit(&self.description, &tracks, self.files(), earlier)
+        } else {
+            None
+        };
+        let Some((compiled, findings)) = found else { return self.compile() };
         let findings = joined(joined(self.own_findings(), wrong), findings);
         let broken = findings.iter().any(Finding::is_error);
         let warnings = self.report(findings);
-        if broken {
-            return Err(SceneError::Problems(warnings));
-        }
-        let settings = (*self.description.render).clone();
-        let integrator = self.integrator_choice();
-        Ok(Compiled { cameras, course, settings, integrator, warnings, ..earlier.clone() })
+        if broken { Err(SceneError::Problems(warnings)) } else { Ok(Compiled { warnings, ..compiled }) }
+    }
+
+    /// Whether the same objects and area lights stand in both, whatever they are made of. Mesh files are compared by their
+    /// contents.
+    fn has_objects_of(&self, other: &Self) -> bool {
+        let (a, b) = (&self.description, &other.description);
+        let (tracks, others) = (self.tracks().0, other.tracks().0);
+        let meshes = |scene: &Self| {
+            let files = mesh_files(&scene.description, &scene.files()).into_iter();
+            files.map(|file| scene.library.digest(&file)).collect::<Vec<_>>()
+        };
+        (&a.groups, &a.objects) == (&b.groups, &b.objects)
+            && (&tracks.objects, &tracks.groups) == (&others.objects, &others.groups)
+            && areas::of(&a.lights).eq(areas::of(&b.lights))
+            && (areas::of(&a.lights).next().is_none() || tracks.lights == others.lights)
+            && meshes(self) == meshes(other)
     }
 
     /// Whether the same stands in both, however it is looked at. Files are compared by their contents.

@@ -146,7 +146,7 @@ impl Build {
 
     fn picture(&self, scene: &Scene) -> Result<Picture, Error> {
         match &self.before {
-            Some((before, picture)) if scene.has_world_of(before) => picture.again(scene, &self.settings),
+            Some((before, picture)) => picture.after(before, scene, &self.settings),
             _ => Picture::new(scene, &self.settings),
         }
     }

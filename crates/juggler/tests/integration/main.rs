@@ -11,6 +11,7 @@
 
 mod area_lights;
 mod building;
+mod changes;
 mod cryptomatte;
 mod gallery;
 mod layers;

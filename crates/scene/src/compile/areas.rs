@@ -41,14 +41,28 @@ pub fn add(
         if shape.prepare().is_err() {
             continue;
         }
-        let emissive = Emissive { radiance: area.radiance().into(), sides: Sides::Front, ..Emissive::default() };
-        let material = materials.get(&MaterialRef::from(emissive), &lights.index(i), findings);
+        let material = materials.get(&emissive(area), &lights.index(i), findings);
         let motion = motion(tracks, i).unwrap_or(place.into());
         objects.push(placed(Content::Shape(Arc::new(shape)), motion, Some(material)));
         names.add_entry(format!("lights[{i}]"));
         entries.push(u32::try_from(shapes).unwrap_or(u32::MAX));
         shapes = shapes.saturating_add(1);
     }
+}
+
+/// Asks for what [`add`] asks for, where the area lights are objects already.
+pub fn ask(scene: &Description, materials: &mut Materials, names: &mut Names, findings: &mut Vec<Finding>) {
+    let lights = Trail::Root.key("lights");
+    for (i, area) in of(&scene.lights) {
+        if area.placed().is_some_and(|(mut shape, _)| shape.prepare().is_ok()) {
+            materials.get(&emissive(area), &lights.index(i), findings);
+            names.add_entry(format!("lights[{i}]"));
+        }
+    }
+}
+
+fn emissive(area: &Area) -> MaterialRef {
+    Emissive { radiance: area.radiance().into(), sides: Sides::Front, ..Emissive::default() }.into()
 }
 
 /// Where a light is at even times; nothing for a light that stays.

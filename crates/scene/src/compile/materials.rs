@@ -2,19 +2,23 @@
 
 use super::labels::Names;
 use super::meshes::Files;
-use crate::description::Description;
+use crate::description::{Description, Object};
+use crate::item::Item;
 use crate::path::{Path, Trail};
 use crate::report::Finding;
 use juggler_tracer::material::{
     AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
 };
 use juggler_tracer::texture::{Input, TextureTable};
+use std::sync::Arc;
 
 /// Compiles materials as objects ask for them.
 pub struct Materials {
     compiler: MaterialCompiler,
     plain: Option<MaterialId>,
     glows: bool,
+    /// The materials that were asked for, in order.
+    given: Vec<MaterialId>,
 }
 
 impl Materials {
@@ -30,7 +34,12 @@ impl Materials {
         }
         let named = scene.materials.iter().map(|(name, material)| (name.clone(), (**material).clone()));
         let compiler = MaterialCompiler::new(textures, named);
-        Self { compiler, plain: None, glows: scene.materials.values().any(|material| glows(material)) }
+        Self {
+            compiler,
+            plain: None,
+            glows: scene.materials.values().any(|material| glows(material)),
+            given: Vec::new(),
+        }
     }
 
     /// The material that stands at `path`; a plain one where there is a mistake.
@@ -42,10 +51,32 @@ impl Materials {
             }
             MaterialRef::Name(_) => self.compiler.material("", material),
         };
-        compiled.unwrap_or_else(|error| {
+        let id = compiled.unwrap_or_else(|error| {
             findings.extend(finding(&error, &path.into()));
             self.plain()
-        })
+        });
+        self.given.push(id);
+        id
+    }
+
+    /// Asks for the materials of a scene's objects in the order in which [`place`](super::placing::place) does.
+    pub fn get_all(&mut self, scene: &Description, findings: &mut Vec<Finding>) {
+        let groups = Trail::Root.key("groups");
+        scene.groups.iter().for_each(|(name, objects)| self.get_of(objects, &groups.key(name), findings));
+        self.get_of(&scene.objects, &Trail::Root.key("objects"), findings);
+        self.plain();
+    }
+
+    fn get_of(&mut self, objects: &[Item<Object>], path: &Trail<'_>, findings: &mut Vec<Finding>) {
+        for (i, object) in objects.iter().enumerate().filter(|(_, object)| object.is_visible()) {
+            let path = path.index(i);
+            if let Some(material) = &object.material {
+                self.get(material, &path.key("material"), findings);
+            }
+            if object.shape.is_none() && object.group.is_none() {
+                self.get_of(object.inner(), &path.key("objects"), findings);
+            }
+        }
     }
 
     /// What things are made of that say nothing.
@@ -63,16 +94,18 @@ impl Materials {
     }
 
     /// All that was compiled, and its names; nothing when a named material is wrong.
-    pub fn finish(self, names: &mut Names, findings: &mut Vec<Finding>) -> MaterialTable {
+    /// The last is which materials were asked for, in order.
+    pub fn finish(self, names: &mut Names, findings: &mut Vec<Finding>) -> (MaterialTable, Arc<Vec<MaterialId>>) {
         let named = self.compiler.compiled().map(|(name, id)| (id, name.to_owned()));
         names.materials = named.collect();
         names.materials.sort_by_key(|(id, _)| id.0);
-        self.compiler.finish().unwrap_or_else(|errors| {
+        let table = self.compiler.finish().unwrap_or_else(|errors| {
             for (name, error) in errors {
                 findings.extend(finding(&error, &Path::root().key("materials").key(name)));
             }
             MaterialTable::default()
-        })
+        });
+        (table, Arc::new(self.given))
     }
 }
 

@@ -9,11 +9,11 @@ use juggler_math::{Aabb, Transform, UVec2, Vec3};
 use juggler_tracer::background::AnyBackground;
 use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
 use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::MaterialTable;
+use juggler_tracer::material::{MaterialId, MaterialTable};
 use juggler_tracer::world::{Labels, Lamp, Object, World};
 use std::sync::Arc;
 
-mod areas;
+pub(crate) mod areas;
 mod count;
 mod course;
 mod defaults;
@@ -64,6 +64,8 @@ pub struct Compiled {
     pub names: Arc<Names>,
     /// The light that brings the most to the middle of the scene.
     pub illuminance: Option<Illuminance>,
+    /// The materials of the objects, in the order in which objects are placed.
+    pub(crate) given: Arc<Vec<MaterialId>>,
 }
 
 /// Everything of a [`World`] but its hierarchy, which takes time to build.
@@ -90,6 +92,7 @@ pub struct Assembly {
     pub integrator: IntegratorChoice,
     /// As [`Compiled::bounds`].
     pub bounds: Aabb,
+    pub(crate) given: Arc<Vec<MaterialId>>,
 }
 
 impl Compiled {
@@ -111,28 +114,18 @@ impl Assembly {
     /// while the shutter is open.
     pub fn of(scene: &Description, tracks: &Tracks, files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
-        let integrator = IntegratorChoice::of(scene);
-        settings::check(&scene.render, &mut findings);
-        let sources = lighting::lights(&scene.lights, files, &mut findings);
-        settings::check_lights(scene, &sources, &mut findings);
-        settings::check_fit(scene, &integrator, &mut findings);
-        let background = lighting::background(scene, files, &mut findings);
-        let mut materials = materials::Materials::new(scene, files, &mut findings);
-        let mut names = Names::of(scene);
+        let Start { integrator, sources, background, mut materials, mut names } =
+            Start::of(scene, files, &mut findings);
         let mut placed = placed(scene, tracks, files, &mut materials, &mut findings);
-        let glows = materials.glows() || background.as_ref().is_some_and(|b| lights(&integrator, b));
-        let lit = glows || !scene.lights.is_empty();
         let (bounds, farthest) = (bounds(&placed.0), farthest(&placed.0, &placed.1));
+        let glows = materials.glows();
         areas::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
         let (cameras, course) = cameras(scene, tracks, &bounds, &farthest, &mut findings);
-        let default = || defaults::lights(&bounds, scene, &integrator).into_iter().map(Lamp::from).collect();
-        let lights = if lit { lamps(&sources, tracks, files, &names) } else { default() };
-        let illuminance = illuminance::at_the_middle(&lights, lit, &bounds);
-        findings.extend((lit && !glows).then(|| illuminance::warning(scene, &lights, &bounds)).flatten());
+        let light = Light { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
+        let (lights, illuminance, background) = light.lit(glows, background, &names, &mut findings);
         let labels = names.labels(scene, entries);
-        let background = background.unwrap_or_else(|| defaults::background(lit));
-        let materials = materials.finish(&mut names, &mut findings);
+        let (materials, given) = materials.finish(&mut names, &mut findings);
         facing::Scenery { scene, objects: &objects, entries: &labels.entries, materials: &materials }
             .check(&mut findings);
         let assembly = Self {
@@ -147,6 +140,7 @@ impl Assembly {
             illuminance,
             integrator,
             bounds,
+            given,
         };
         (assembly, findings)
     }
@@ -154,10 +148,94 @@ impl Assembly {
     /// Builds the world.
     pub fn compile(self, settings: Render, warnings: Problems) -> Compiled {
         let world = World::new(self.objects, self.materials, self.lights, self.background).with_labels(self.labels);
-        let Self { cameras, course, names, integrator, bounds, illuminance, .. } = self;
+        let Self { cameras, course, names, integrator, bounds, illuminance, given, .. } = self;
         let (world, names) = (Arc::new(world), Arc::new(names));
-        Compiled { world, cameras, course, settings, integrator, bounds, warnings, names, illuminance }
+        Compiled { world, cameras, course, settings, integrator, bounds, warnings, names, illuminance, given }
     }
+}
+
+/// What is known of a scene before its objects are placed.
+struct Start {
+    integrator: IntegratorChoice,
+    sources: Vec<AnyLight>,
+    background: Option<AnyBackground>,
+    materials: materials::Materials,
+    names: Names,
+}
+
+impl Start {
+    fn of(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
+        let integrator = IntegratorChoice::of(scene);
+        settings::check(&scene.render, findings);
+        let sources = lighting::lights(&scene.lights, files, findings);
+        settings::check_lights(scene, &sources, findings);
+        settings::check_fit(scene, &integrator, findings);
+        let background = lighting::background(scene, files, findings);
+        let materials = materials::Materials::new(scene, files, findings);
+        Self { integrator, sources, background, materials, names: Names::of(scene) }
+    }
+}
+
+/// What the lights of a world follow from.
+struct Light<'s> {
+    scene: &'s Description,
+    integrator: &'s IntegratorChoice,
+    bounds: &'s Aabb,
+    sources: &'s [AnyLight],
+    tracks: &'s Tracks,
+    files: Files<'s>,
+}
+
+impl Light<'_> {
+    /// The lights, the brightest of them and the background, of a scene that `glows` or not.
+    fn lit(
+        &self,
+        glows: bool,
+        background: Option<AnyBackground>,
+        names: &Names,
+        findings: &mut Vec<Finding>,
+    ) -> (Vec<Lamp>, Option<Illuminance>, AnyBackground) {
+        let Self { scene, integrator, bounds, sources, tracks, files } = *self;
+        let glows = glows || background.as_ref().is_some_and(|b| lights(integrator, b));
+        let lit = glows || !scene.lights.is_empty();
+        let default = || defaults::lights(bounds, scene, integrator).into_iter().map(Lamp::from).collect();
+        let lights = if lit { lamps(sources, tracks, files, names) } else { default() };
+        let illuminance = illuminance::at_the_middle(&lights, lit, bounds);
+        findings.extend((lit && !glows).then(|| illuminance::warning(scene, &lights, bounds)).flatten());
+        (lights, illuminance, background.unwrap_or_else(|| defaults::background(lit)))
+    }
+}
+
+/// A scene whose objects are those of an earlier compilation, with materials, lights and a background of its own: nothing is
+/// placed, prepared or sorted again. Nothing where that is not enough: objects would get other materials than they have, or
+/// other objects shine.
+pub fn relit(
+    scene: &Description,
+    tracks: &Tracks,
+    files: Files<'_>,
+    earlier: &Compiled,
+) -> Option<(Compiled, Vec<Finding>)> {
+    let mut findings = Vec::new();
+    let Start { integrator, sources, background, mut materials, mut names } = Start::of(scene, files, &mut findings);
+    materials.get_all(scene, &mut findings);
+    let glows = materials.glows();
+    areas::ask(scene, &mut materials, &mut names, &mut findings);
+    let bounds = earlier.bounds;
+    let (cameras, course) = cameras(scene, tracks, &bounds, &Path::root().key("objects"), &mut findings);
+    let light = Light { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
+    let (lights, illuminance, background) = light.lit(glows, background, &names, &mut findings);
+    let labels = names.labels(scene, earlier.world.labels().entries.clone());
+    let (materials, given) = materials.finish(&mut names, &mut findings);
+    let shines = |table: &MaterialTable, id: &MaterialId| table.glow(*id).is_some();
+    let fits = given == earlier.given
+        && given.iter().all(|id| shines(&materials, id) == shines(earlier.world.materials(), id));
+    fits.then(|| {
+        let world = Arc::new(earlier.world.relit(materials, lights, background).with_labels(labels));
+        let (settings, names) = ((*scene.render).clone(), Arc::new(names));
+        let changed =
+            Compiled { world, cameras, course, settings, integrator, names, illuminance, given, ..earlier.clone() };
+        (changed, findings)
+    })
 }
 
 /// Every object in its place, and the number of the first shape of each of the scene's objects. Too many objects are

@@ -148,7 +148,7 @@ fn an_area_light_is_a_shape_behind_all_objects() {
     assert_eq!(Part::of(&scene.description, 1).unwrap().path, "lights[1]");
     assert!(world.shape_bounds(1).center().abs_diff_eq(Vec3::new(0.0, 3.0, 0.0), 1e-5));
     // The default camera sees the objects, and stays when the world is used again.
-    let again = scene.compile_with(&compiled).unwrap();
+    let again = scene.compile_after(&scene, &compiled).unwrap();
     assert!(compiled.bounds.max.y <= 1.0 && again.cameras == compiled.cameras);
     assert_eq!(scene.needs().objects, 2);
 }

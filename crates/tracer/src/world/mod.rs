@@ -10,6 +10,7 @@ use emitters::Emitters;
 use glowing::Glowing;
 use juggler_math::{Aabb, Ray, Rgb, Vec2, Vec3};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 mod areas;
 mod carried;
@@ -99,7 +100,8 @@ pub struct Vertex {
 /// Everything that can be seen.
 #[derive(Clone)]
 pub struct World {
-    top: Level,
+    /// Shared by worlds in which the same things stand in the same places.
+    top: Arc<Level>,
     materials: MaterialTable,
     lamps: Vec<Lamp>,
     ambient: Rgb,
@@ -123,7 +125,26 @@ impl World {
         lights: impl IntoIterator<Item = impl Into<Lamp>>,
         background: AnyBackground,
     ) -> Self {
-        let top = Level::top(objects);
+        Self::over(Arc::new(Level::top(objects)), materials, lights, background)
+    }
+
+    /// The same objects with other materials, lights and background: nothing is built anew but what depends on those. Every
+    /// `Object::material` must be in `materials`. The result is bit for bit that of [`World::new`].
+    pub fn relit(
+        &self,
+        materials: MaterialTable,
+        lights: impl IntoIterator<Item = impl Into<Lamp>>,
+        background: AnyBackground,
+    ) -> Self {
+        Self::over(Arc::clone(&self.top), materials, lights, background)
+    }
+
+    fn over(
+        top: Arc<Level>,
+        materials: MaterialTable,
+        lights: impl IntoIterator<Item = impl Into<Lamp>>,
+        background: AnyBackground,
+    ) -> Self {
         let levels = geometry::levels(&top);
         let used = || levels.iter().flat_map(|level| &level.objects).filter_map(|placed| placed.material);
         let has_transparency = used().any(|id| materials.is_transparent(id));
@@ -156,9 +177,19 @@ impl World {
 
     /// The same world for another vector unit than the best of this machine: for tests and measurements.
     pub fn with_simd_level(mut self, level: SimdLevel) -> Self {
-        self.top = self.top.at_simd_level(level);
+        self.top = Arc::new(Arc::unwrap_or_clone(self.top).at_simd_level(level));
         self.emitters = self.emitters.with_simd_level(level);
         self
+    }
+
+    /// What its shapes are made of.
+    pub fn materials(&self) -> &MaterialTable {
+        &self.materials
+    }
+
+    /// What belongs together.
+    pub fn labels(&self) -> &Labels {
+        &self.labels
     }
 
     /// The lights that shine from somewhere.
@@ -184,6 +215,11 @@ impl World {
     /// A box around all bounded objects, wherever they come; empty when there are none.
     pub fn bounds(&self) -> Aabb {
         self.top.bounds()
+    }
+
+    /// Whether both hold the very same objects in memory.
+    pub fn shares_objects_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.top, &other.top)
     }
 
     /// A box around a shape by its number, which must be that of a [`Vertex`]; empty when it has no end.
