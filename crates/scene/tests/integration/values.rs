@@ -250,39 +250,43 @@ fn edited_scenes_are_those_that_are_written_anew() {
     assert!(same > 100 && refused > 100, "{same} {refused}");
 }
 
-/// A long list, which is read piece by piece, gives the scene that a short one gives, and the same messages.
-#[test]
-fn long_lists_are_read_as_short_ones_are() {
+/// A scene of so many objects, each on a line of its own, and one more.
+fn long(count: usize, last: &str) -> Result<Scene, SceneError> {
     let ball = |i: usize| match i % 500 {
         7 => r#"{"shape": {"sphere": {"radius": "=1 + frame"}}, "material": "red"}"#.to_owned(),
         8 => r#"{"objects": [{"shape": "disk", "material": {"phong": {"diffuse": {"checker": {}}}}}]}"#.to_owned(),
         _ => format!(r#"{{"shape": "sphere", "transform": {{"translate": [{i}, 0, 0]}}, "name": "b{i}"}}"#),
     };
-    let text = |count: usize, last: &str| {
-        let balls: Vec<String> = (0..count).map(ball).chain([last.to_owned()]).collect();
-        format!(
-            "{{\"version\": 1, \"animation\": {{\"frames\": 9}},\n\"materials\": {{\"red\": {{\"phong\": {{}}}}}}, \"objects\": [{}]}}",
-            balls.join(",\n")
-        )
-    };
-    let read = |count: usize, last: &str| Scene::from_json(text(count, last), "long.json");
-    let (long, short) = (read(2500, r#"{"shape": "plane"}"#).unwrap(), read(600, r#"{"shape": "plane"}"#).unwrap());
+    let balls: Vec<String> = (0..count).map(ball).chain([last.to_owned()]).collect();
+    let head = r#"{"version": 1, "animation": {"frames": 9}, "materials": {"red": {"phong": {}}},"#;
+    Scene::from_json(format!("{head}\n\"objects\": [{}]}}", balls.join(",\n")), "long.json")
+}
+
+/// A long list, which is read piece by piece, gives the scene that a short one gives.
+#[test]
+fn long_lists_are_read_as_short_ones_are() {
+    let [long, short] = [2500, 600].map(|count| long(count, r#"{"shape": "plane"}"#).unwrap());
     for frame in [0.0, 2.5] {
         let [long, short] = [&long, &short].map(|scene| scene.at_frame(frame).unwrap().description);
         assert_eq!((long.objects.len(), short.objects.len()), (2501, 601));
         assert_eq!(long.objects[..600], short.objects[..600]);
     }
     assert_is_one(&long, "long");
+}
+
+/// Mistakes in long lists are told as those in short ones, with their places.
+#[test]
+fn mistakes_in_long_lists_have_their_places() {
     for (wrong, path, words) in [
-        (r#"{"shape": "spere"}"#, "shape", "unknown kind"),
-        (r#"{"shape": {"sphere": {"radius": "=r"}}}"#, "shape.sphere.radius", "`r`"),
-        (r#"{"shape": "sphere", "material": "blue"}"#, "material", "no material"),
-        (r#"{"shape": "sphere", "shape": "disk"}"#, "shape", "second time"),
-        (r#"{"shape": {"mesh": {"file": "none.obj"}}}"#, "shape.mesh.file", "none.obj"),
+        (r#"{"shape": "spere"}"#, "objects[N].shape", "unknown kind"),
+        (r#"{"shape": {"sphere": {"radius": "=r"}}}"#, "objects[N].shape.sphere.radius", "`r`"),
+        (r#"{"shape": "sphere", "material": "blue"}"#, "objects[N].material", "no material"),
+        (r#"{"shape": "sphere", "shape": "disk"}"#, "objects[N].shape", "second time"),
+        (r#"{"shape": {"mesh": {"file": "none.obj"}}}"#, "objects[N].shape.mesh.file", "none.obj"),
         (r#"{"shape": "sphere" "name": 3}"#, "", "missing"),
     ] {
         let told = |count: usize| {
-            let problems = match read(count, wrong) {
+            let problems = match long(count, wrong) {
                 Ok(scene) => scene.check(),
                 Err(SceneError::Problems(problems)) => problems,
                 Err(error) => panic!("{error}"),
@@ -292,9 +296,19 @@ fn long_lists_are_read_as_short_ones_are() {
             assert!(line.contains(&format!("long.json:{}:", count + 2)), "{line}");
             (problem.path.replace(&count.to_string(), "N"), problem.message)
         };
+        assert_eq!(told(2500), told(600));
         let (found, message) = told(2500);
-        assert_eq!((&found, &message), (&told(600).0, &told(600).1));
-        let expected = if path.is_empty() { String::new() } else { format!("objects[N].{path}") };
-        assert!(found == expected && message.contains(words), "{found}: {message}");
+        assert!(found == path && message.contains(words), "{found}: {message}");
     }
+}
+
+/// What does not move is shared by all frames, and not looked at while the shutter is open.
+#[test]
+fn only_what_moves_is_read_again() {
+    let mut scene = long(2500, r#"{"shape": "plane"}"#).unwrap();
+    let later = scene.at_frame(3.0).unwrap();
+    let same = (0..2501).filter(|i| scene.description.objects[*i].is_same(&later.description.objects[*i]));
+    assert_eq!(same.count(), 2501 - 5, "one of five hundred grows");
+    scene.description.render.shutter = [0.0, 0.5];
+    assert!(scene.compile().unwrap().world.moves() && !later.compile().unwrap().world.moves());
 }
