@@ -78,15 +78,17 @@ fn coats() -> Vec<Case> {
 fn transmitting() -> Vec<Case> {
     let index: (&str, &[f64]) = ("ior", &[1.1, 1.5, 2.4]);
     let mut all = lowers("dielectric", 0.998, &grid(r#""thin": true"#, &[index, ROUGHNESS, ANISOTROPY]));
-    let shares = [(1.0, 0.0), (0.6, 0.4), (0.0, 1.0)];
-    let sheets = shares.map(|(back, through)| format!(r#""reflectance": {back}, "transmittance": {through}"#));
-    all.extend(lowers("translucent", 0.99, &sheets[usize::from(!is_deep())..]));
+    let sheets =
+        [(0.6, 0.4), (0.0, 1.0)].map(|(back, through)| format!(r#""reflectance": {back}, "transmittance": {through}"#));
+    all.extend(lowers("translucent", 0.99, &sheets));
     let fogs = [(0.5, 0.0), (3.0, 0.7), (3.0, -0.5)]
         .map(|(scattering, g)| format!(r#""medium": {{"scattering": {scattering}, "anisotropy": {g}}}"#));
     all.extend(lowers("boundary", 0.99, &fogs));
     let within = |case: &Case| Case { material: case.material.clone(), is_within: true, ..*case };
     let inside: Vec<Case> = all.iter().map(within).collect();
-    all.into_iter().chain(inside).collect()
+    // No light gets into a ball of a sheet that transmits nothing, so it is white from outside only.
+    let opaque = lowers("translucent", 0.99, &[r#""reflectance": 1, "transmittance": 0"#.to_owned()]);
+    all.into_iter().chain(inside).chain(opaque).collect()
 }
 
 /// Materials made of others.
