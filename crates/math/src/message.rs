@@ -30,7 +30,7 @@ pub fn line(text: &str) -> String {
     excerpt(&pieces.collect::<Vec<String>>().join("`"), MAX_LINE)
 }
 
-/// Message of several lines, each as [`line`] has it.
+/// Message of several lines, each as [`line()`] has it.
 pub fn lines(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }

@@ -16,10 +16,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Times that are looked at. What moves goes straight between them, and round where it turns.
-pub const MOMENTS: usize = 17;
+const MOMENTS: usize = 17;
 
-/// What moves while the shutter is open, each at [`MOMENTS`] even times from opening to closing. What is not in here stands
-/// still.
+/// What moves while the shutter is open, each at 17 even times from opening to closing. What is not in here stands still.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tracks {
     /// The scene's own objects.
