@@ -1,30 +1,29 @@
-//! Changing a scene by JSON pointers, by the same checks that texts go through.
+//! Edits by JSON pointer, validated like documents.
 
 use crate::description::{Description, Named, Written, described};
 use crate::document::{Member, Members, Node, Value as Json, put};
 use crate::item::Template;
-use crate::motion::{self, Reader, Wanted};
+use crate::motion::{self, ItemReader, ItemSource};
 use crate::path::{Path, Step, Trail};
 use crate::report::Finding;
-use crate::validate::{self, Known};
+use crate::validate::{self, NameScope};
 use crate::{Scene, SceneError, animate};
 use serde_json::Value;
 use std::sync::Arc;
 
-/// Sections of a scene that are lists.
+/// Scene sections that are lists of items.
 const LISTS: [&str; 2] = ["objects", "lights"];
-/// Sections of a scene that are maps of items.
+/// Scene sections that are maps of items.
 const MAPS: [&str; 3] = ["cameras", "textures", "materials"];
-/// Sections of a scene that are one item.
+/// Scene sections that are single items.
 const SINGLE: [&str; 4] = ["render", "tone", "camera", "background"];
 
 impl Scene {
-    /// The same scene with another value at a place, which is a JSON pointer such as `/materials/red/phong/diffuse`;
-    /// `null` takes away what is there. The value may be an expression or a value form. Objects on the way are made where
-    /// there are none.
+    /// Returns the scene with `value` stored at a JSON pointer such as `/materials/red/phong/diffuse`. `null` removes
+    /// the value. The value may be an expression or a value form. Missing objects on the way are created.
     pub fn with_value(&self, pointer: &str, value: Value) -> Result<Self, SceneError> {
         let mut scene = self.clone();
-        scene.description = self.settled().into_owned();
+        scene.description = self.edits_merged().into_owned();
         let found = scene.set(pointer, value);
         match found {
             Ok(()) => Ok(scene),
@@ -46,7 +45,7 @@ impl Scene {
                 let target =
                     if section == "paths" { &mut self.description.paths } else { &mut self.description.variables };
                 *target = Written::new(written);
-                return self.work_out_again();
+                return self.resolve_again();
             }
             _ if is_of_items(&section) => {}
             _ => return self.set_plain(&section, &tree),
@@ -58,7 +57,7 @@ impl Scene {
         self.check_names(removes)
     }
 
-    /// Sets what is neither an item nor a list of items.
+    /// Sets a section that is neither an item nor a list of items.
     fn set_plain(&mut self, section: &str, tree: &Node) -> Result<(), Vec<Finding>> {
         let mut findings = Vec::new();
         let found = described(tree, &mut findings);
@@ -72,17 +71,17 @@ impl Scene {
             "background_light_group" => own.background_light_group = found.background_light_group,
             _ => {}
         }
-        if section == "animation" { self.work_out_again() } else { Ok(()) }
+        if section == "animation" { self.resolve_again() } else { Ok(()) }
     }
 
-    /// Works out all that depends on variables, paths or time again.
-    fn work_out_again(&mut self) -> Result<(), Vec<Finding>> {
+    /// Evaluates all templates again, after a change of variables, paths or animation settings.
+    fn resolve_again(&mut self) -> Result<(), Vec<Finding>> {
         self.check_paths()?;
-        let wanted = self.description.worked_out(|_| true);
+        let wanted = self.description.templates(|_| true);
         let parts = self.read_parts(&wanted)?;
         parts.into_iter().for_each(|(path, part)| self.description.put(&path, part));
         let head = motion::head(&self.description);
-        self.description.time_again(&head);
+        self.description.update_time_dependence(&head);
         Ok(())
     }
 
@@ -91,16 +90,14 @@ impl Scene {
         let (resolved, mut findings) = animate::resolve(&head, self.sources(), self.frame);
         let at = Trail::Root.key("paths");
         let paths = resolved.get("paths");
-        findings.extend(
-            paths.into_iter().flat_map(|paths| {
-                validate::item(paths, &Path::from(&at), &at, Known::Scene(&self.description)).findings
-            }),
-        );
+        findings.extend(paths.into_iter().flat_map(|paths| {
+            validate::item(paths, &Path::from(&at), &at, NameScope::Scene(&self.description)).findings
+        }));
         if findings.iter().any(Finding::is_error) { Err(findings) } else { Ok(()) }
     }
 
-    /// Reads items that were written anew, and puts them where they belong.
-    fn read_items(&mut self, wanted: &[Wanted]) -> Result<(), Vec<Finding>> {
+    /// Reads edited items and stores them.
+    fn read_items(&mut self, wanted: &[ItemSource]) -> Result<(), Vec<Finding>> {
         let parts = self.read_parts(wanted)?;
         let in_place: Vec<String> = parts.iter().filter_map(|(path, part)| part.name_in_place(path)).collect();
         parts.into_iter().for_each(|(path, part)| self.description.put(&path, part));
@@ -109,15 +106,15 @@ impl Scene {
         Ok(())
     }
 
-    fn read_parts(&self, wanted: &[Wanted]) -> Result<Vec<(Path, motion::Part)>, Vec<Finding>> {
+    fn read_parts(&self, wanted: &[ItemSource]) -> Result<Vec<(Path, motion::ItemValue)>, Vec<Finding>> {
         let head = motion::head(&self.description);
-        let mut reader = Reader::new(&head, self.sources(), self.frame, Known::Scene(&self.description));
+        let mut reader = ItemReader::new(&head, self.sources(), self.frame, NameScope::Scene(&self.description));
         wanted.iter().for_each(|wanted| reader.add(wanted));
         let (parts, findings) = reader.finish();
         parts.ok_or(findings)
     }
 
-    /// Where names were taken away, whether something still uses them.
+    /// Checks that no item refers to a removed name.
     fn check_names(&self, removes: bool) -> Result<(), Vec<Finding>> {
         let findings = if removes { self.description.item_findings(|_| true) } else { Vec::new() };
         if findings.iter().any(Finding::is_error) { Err(findings) } else { Ok(()) }
@@ -128,7 +125,7 @@ fn is_of_items(section: &str) -> bool {
     LISTS.contains(&section) || MAPS.contains(&section) || SINGLE.contains(&section) || section == "groups"
 }
 
-/// A scene of which only that is written which a change at a path can reach; other elements of lists are null.
+/// JSON of the part of a scene that an edit at `path` can reach; other list elements are null.
 fn skeleton(scene: &Description, section: &str, path: &Path) -> Node {
     let steps = path.steps().get(1..).unwrap_or_default();
     let at = |steps: &[Step]| match steps.first() {
@@ -174,7 +171,7 @@ fn map(name: &str, node: Option<Node>) -> Node {
     object([(name, node)])
 }
 
-/// A list of which only the element `at` is written; all where there is no such.
+/// JSON of a list in which only the element `at` is not null; all elements for `None`.
 fn list(mut nodes: impl Iterator<Item = Node>, count: usize, at: Option<usize>) -> Node {
     let null = || Node { place: None, value: Json::Null };
     let elements = match at {
@@ -190,13 +187,13 @@ fn list(mut nodes: impl Iterator<Item = Node>, count: usize, at: Option<usize>) 
     Node { place: None, value: Json::Array(Arc::new(elements)) }
 }
 
-/// What is to be read of a section that was written anew as far as `path` can reach.
-fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<Wanted> {
+/// Sources of the items that an edit at `path` has changed.
+fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<ItemSource> {
     let root = Path::root().key(key);
     let mut wanted = Vec::new();
     let mut want = |path: Path, node: &Node| {
         let template = Arc::new(Template { node: node.clone(), depends_on_time: true });
-        wanted.push(Wanted { path, template, moves: false, place: node.place });
+        wanted.push(ItemSource { path, template, moves: false, place: node.place });
     };
     let is_list = |node: &Node| matches!(node.value, Json::Array(_));
     let mut each = |root: &Path, list: &Node, step: Option<&Step>| match step {
@@ -219,8 +216,8 @@ fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<Wanted> {
 }
 
 impl Description {
-    /// Takes away what a change at a path has taken away or will write anew; `written` is what is left of the section.
-    /// Whether names may be missing now.
+    /// Removes the values that an edit at `path` removes or replaces; `written` is the edited section. Returns whether
+    /// names were removed.
     fn remove(&mut self, path: &Path, section: &str, written: Option<&Node>) -> bool {
         let steps = path.steps();
         self.list_forms.retain(|form| !path.steps().starts_with(form.path.steps()));
@@ -253,7 +250,7 @@ impl Description {
     }
 }
 
-/// Takes away the item of a name; all of them without a name.
+/// Removes the item with a name, or all items.
 fn take<T: Clone>(map: &mut Named<T>, name: Option<&str>) {
     match name {
         None => map.clear(),
@@ -261,7 +258,7 @@ fn take<T: Clone>(map: &mut Named<T>, name: Option<&str>) {
     }
 }
 
-/// Makes a list as long as it is now, where an element was taken away.
+/// Removes the element at a position if the edited list has become shorter, or all elements.
 fn shorten<T: Clone>(list: &mut crate::Shared<Vec<T>>, at: Option<usize>, whole: bool, count: usize) {
     match at {
         _ if whole => list.clear(),

@@ -1,5 +1,5 @@
-//! Items: the objects, lights, materials, textures, cameras and settings that a scene is made of, each with what
-//! the scene knows of it beside its value: how it moves, where it was written, whether it has been checked.
+//! Items of a scene: objects, lights, materials, textures, cameras and settings, each with its animation template,
+//! its source location and its validation state.
 
 use crate::document::{Node, Place};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -18,43 +18,43 @@ pub struct Item<T>(Arc<Inner<T>>);
 #[derive(Clone)]
 struct Inner<T> {
     value: T,
-    /// How it moves; nothing for an item that is the same at all frames.
+    /// Animation template; `None` for a static item.
     template: Option<Arc<Template>>,
-    /// Where it was written.
+    /// Source location.
     place: Option<Place>,
     state: State,
 }
 
-/// What is known of an item's value.
+/// Validation state of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// It fits the schema, and is what its template gives at the scene's frame.
+    /// The value was validated and equals the template's value at the scene's frame.
     Checked,
-    /// It was made or changed by a program.
+    /// A program created or changed the value.
     Changed,
 }
 
-/// How an item moves: its JSON with expressions and value forms in place of values.
+/// Animation template of an item: its JSON with unevaluated expressions and value forms.
 #[derive(Debug)]
 pub(crate) struct Template {
     /// The JSON.
     pub node: Node,
-    /// Whether it changes from frame to frame; otherwise with variables and paths alone.
+    /// Whether the value changes with time; otherwise it depends on variables and paths only.
     pub depends_on_time: bool,
 }
 
 impl<T> Item<T> {
-    /// The same item, read from a text and checked.
-    pub(crate) fn learned(mut self, place: Option<Place>, template: Option<Arc<Template>>) -> Self
+    /// Returns the item marked as validated, with its source location and template.
+    pub(crate) fn with_source(mut self, place: Option<Place>, template: Option<Arc<Template>>) -> Self
     where
         T: Clone,
     {
-        self.learn(place, template);
+        self.set_source(place, template);
         self
     }
 
-    /// Learns that the value was read from a text and checked, where it stands there, and how it moves.
-    pub(crate) fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>)
+    /// Marks the value as validated and sets its source location and template.
+    pub(crate) fn set_source(&mut self, place: Option<Place>, template: Option<Arc<Template>>)
     where
         T: Clone,
     {
@@ -62,7 +62,7 @@ impl<T> Item<T> {
         (inner.place, inner.template, inner.state) = (place, template, State::Checked);
     }
 
-    /// Sets how it moves.
+    /// Sets the animation template.
     pub(crate) fn set_template(&mut self, template: Option<Arc<Template>>)
     where
         T: Clone,
@@ -70,35 +70,35 @@ impl<T> Item<T> {
         Arc::make_mut(&mut self.0).template = template;
     }
 
-    /// Whether both are the very same item in memory.
+    /// Whether both share the same memory.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// How it moves. Of an item that a program has changed since, this is how it moved before.
+    /// Animation template. After an edit by a program, this is the template before the edit.
     pub(crate) fn template(&self) -> Option<&Arc<Template>> {
         self.0.template.as_ref()
     }
 
-    /// Where it was written.
+    /// Source location.
     pub(crate) fn place(&self) -> Option<Place> {
         self.0.place
     }
 
-    /// Whether a program has made or changed it since the scene was read.
+    /// Whether a program has created or changed the value since the scene was read.
     pub(crate) fn is_changed(&self) -> bool {
         self.0.state == State::Changed
     }
 
-    /// The value, for changes that leave it checked.
-    pub(crate) fn quietly(&mut self) -> &mut T
+    /// Mutable access that keeps the validation state.
+    pub(crate) fn value_mut_unmarked(&mut self) -> &mut T
     where
         T: Clone,
     {
         &mut Arc::make_mut(&mut self.0).value
     }
 
-    /// The value.
+    /// Unwraps the value.
     pub fn into_inner(self) -> T
     where
         T: Clone,

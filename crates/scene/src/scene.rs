@@ -7,12 +7,12 @@ use crate::document::{Document, Node, Place, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::import::Content;
 use crate::integrator::IntegratorChoice;
-use crate::motion::{self, Reader, Tracks, read_list};
+use crate::motion::{self, ItemReader, Tracks, read_list};
 use crate::path::Path as ScenePath;
 use crate::relocate::relocate;
 use crate::report::{Finding, Problems};
 use crate::store::{Bundle, Store};
-use crate::validate::{GivenNames, Known};
+use crate::validate::{DeclaredNames, NameScope};
 use crate::{animate, around};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -43,7 +43,7 @@ pub struct Scene {
     /// Files that were loaded, for copies of this scene and its other frames.
     library: Library,
     /// What moves while the shutter is open, once somebody has asked.
-    tracks: Arc<Mutex<Option<KnownTracks>>>,
+    tracks: Arc<Mutex<Option<CachedTracks>>>,
 }
 
 /// The files of a scene, merged.
@@ -52,12 +52,12 @@ struct Origin {
     document: Document,
     /// What is allowed and probably not meant.
     warnings: Vec<Finding>,
-    names: GivenNames,
+    names: DeclaredNames,
 }
 
 /// The tracks of a scene that was like this.
 #[derive(Debug)]
-struct KnownTracks {
+struct CachedTracks {
     scene: Description,
     frame: f64,
     tracks: Arc<Tracks>,
@@ -119,7 +119,7 @@ impl Scene {
         }
         let whole = whole && !findings.iter().any(Finding::is_error);
         let warnings = findings.iter().filter(|finding| !finding.is_error()).cloned().collect();
-        let names = GivenNames::of(&description);
+        let names = DeclaredNames::of(&description);
         let scene = Self {
             description,
             origin: Some(Arc::new(Origin { document, warnings, names })),
@@ -136,18 +136,18 @@ impl Scene {
 
     /// The same scene at another frame, which may lie between two. What moves is read anew, all else is shared.
     pub fn at_frame(&self, frame: f64) -> Result<Self, SceneError> {
-        let settled = self.settled();
-        let wanted = settled.timed();
+        let edits_merged = self.edits_merged();
+        let wanted = edits_merged.time_dependent();
         let mut scene = Self { frame, tracks: Arc::default(), ..self.clone() };
         if wanted.is_empty() {
-            scene.description = settled.into_owned();
+            scene.description = edits_merged.into_owned();
             return Ok(scene);
         }
-        let head = motion::head(&settled);
-        let mut reader = Reader::new(&head, self.sources(), frame, Known::Scene(&settled));
+        let head = motion::head(&edits_merged);
+        let mut reader = ItemReader::new(&head, self.sources(), frame, NameScope::Scene(&edits_merged));
         wanted.iter().for_each(|wanted| reader.add(wanted));
         let (parts, findings) = reader.finish();
-        scene.description = settled.clone().into_owned();
+        scene.description = edits_merged.clone().into_owned();
         match parts {
             Some(parts) => parts.into_iter().for_each(|(path, part)| scene.description.put(&path, part)),
             None => return Err(SceneError::Problems(scene.report(findings))),
@@ -209,7 +209,7 @@ impl Scene {
             let integrator = self.integrator_choice();
             Some((Compiled { cameras, course, settings, integrator, ..earlier.clone() }, findings))
         } else if self.has_objects_of(before) {
-            compile::relit(&self.description, &tracks, self.files(), earlier)
+            compile::with_shading(&self.description, &tracks, self.files(), earlier)
         } else {
             None
         };
@@ -258,11 +258,11 @@ impl Scene {
         if let Some(known) = known.as_ref().filter(|k| k.frame == self.frame && k.scene.moves_as(&self.description)) {
             return (Arc::clone(&known.tracks), known.findings.clone());
         }
-        let settled = self.settled();
-        let (tracks, findings) = Tracks::of(&settled, self.sources(), self.frame);
+        let edits_merged = self.edits_merged();
+        let (tracks, findings) = Tracks::of(&edits_merged, self.sources(), self.frame);
         let tracks = Arc::new(tracks);
         let (scene, frame) = (self.description.clone(), self.frame);
-        *known = Some(KnownTracks { scene, frame, tracks: Arc::clone(&tracks), findings: findings.clone() });
+        *known = Some(CachedTracks { scene, frame, tracks: Arc::clone(&tracks), findings: findings.clone() });
         (tracks, findings)
     }
 
@@ -294,7 +294,7 @@ impl Scene {
 
     /// Whether anything in the scene may change from frame to frame.
     pub fn depends_on_time(&self) -> bool {
-        !self.settled().timed().is_empty()
+        !self.edits_merged().time_dependent().is_empty()
     }
 
     /// Everything that decides the pixels, however many samples are taken.
@@ -316,7 +316,7 @@ impl Scene {
 
     /// The same as a tree.
     pub fn to_value(&self) -> Value {
-        motion::written(&self.settled())
+        motion::written(&self.edits_merged())
     }
 
     /// What does not fit the schema. What was read from a file was checked when it was read, and only warnings are left of
@@ -335,8 +335,8 @@ impl Scene {
     }
 
     /// The description with templates that hold all that programs have changed.
-    pub(crate) fn settled(&self) -> Cow<'_, Description> {
-        motion::settled(&self.description, self.sources(), self.frame)
+    pub(crate) fn edits_merged(&self) -> Cow<'_, Description> {
+        motion::edits_merged(&self.description, self.sources(), self.frame)
     }
 
     pub(crate) fn sources(&self) -> &Sources {

@@ -1,4 +1,4 @@
-//! Values that copies of a scene share until one of them is changed: copying costs a pointer.
+//! Copy-on-write sections of a scene.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -7,35 +7,35 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
 
-/// A value shared by the copies of a scene (copy on write). Reading goes straight to the value; the first change
-/// through [`DerefMut`] copies the value if another copy of the scene holds it too.
-pub struct Shared<T>(Arc<Kept<T>>);
+/// Copy-on-write value, shared between copies of a scene. Mutable access through [`DerefMut`] copies the value if
+/// another scene shares it.
+pub struct Shared<T>(Arc<Cached<T>>);
 
-struct Kept<T> {
+struct Cached<T> {
     value: T,
-    /// A hash of the value, once somebody has asked for it.
+    /// Content hash of the value, computed on first use.
     digest: OnceLock<String>,
 }
 
-impl<T: Clone> Clone for Kept<T> {
+impl<T: Clone> Clone for Cached<T> {
     fn clone(&self) -> Self {
         self.value.clone().into()
     }
 }
 
-impl<T> From<T> for Kept<T> {
+impl<T> From<T> for Cached<T> {
     fn from(value: T) -> Self {
         Self { value, digest: OnceLock::new() }
     }
 }
 
 impl<T> Shared<T> {
-    /// Whether both are the very same value in memory.
+    /// Whether both share the same memory.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The value itself; a copy where another copy of the scene holds it too.
+    /// Unwraps the value; clones it if another scene shares it.
     pub fn into_inner(self) -> T
     where
         T: Clone,
@@ -43,7 +43,7 @@ impl<T> Shared<T> {
         Arc::unwrap_or_clone(self.0).value
     }
 
-    /// The hash of the value, worked out once.
+    /// Content hash of the value; `of` is called once per value.
     pub(crate) fn digest(&self, of: impl FnOnce(&T) -> String) -> &str {
         self.0.digest.get_or_init(|| of(&self.0.value))
     }
@@ -86,9 +86,9 @@ impl<T> Deref for Shared<T> {
 
 impl<T: Clone> DerefMut for Shared<T> {
     fn deref_mut(&mut self) -> &mut T {
-        let kept = Arc::make_mut(&mut self.0);
-        kept.digest = OnceLock::new();
-        &mut kept.value
+        let cached = Arc::make_mut(&mut self.0);
+        cached.digest = OnceLock::new();
+        &mut cached.value
     }
 }
 

@@ -62,7 +62,7 @@ fn changed_worlds_are_those_that_are_built_anew() {
         assert_ne!(hash(&after), own, "{what}");
         assert_eq!(after.fingerprint(), anew.fingerprint(), "{what}");
         assert_eq!(after.world().geometry(), anew.world().geometry(), "{what}");
-        assert_eq!(after.world().shares_objects_with(first.world()), shares, "{what}");
+        assert_eq!(after.world().shares_geometry_with(first.world()), shares, "{what}");
         shared += usize::from(Arc::ptr_eq(after.world(), first.world()));
     }
     assert_eq!(shared, 2, "camera and settings");

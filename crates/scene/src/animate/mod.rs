@@ -28,8 +28,8 @@ mod walk;
 pub use easing::{Ease, Easing};
 pub use paths::{MAX_POINTS, PathName};
 pub(crate) use resolver::Resolver;
-pub(crate) use survey::{Changing, is_worked_out};
 pub use survey::{Survey, Track, depends_on_time};
+pub(crate) use survey::{TimeDependence, has_expressions};
 pub use values::{Along, Animate, Interpolation, Joint, Key, MAX_KEYS, Repeat, ValueForm};
 pub use walk::MAX_NESTING;
 

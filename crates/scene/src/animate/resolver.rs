@@ -22,7 +22,7 @@ impl<'s> Resolver<'s> {
         if let Some(paths) = walk.all_paths() {
             let paths = Node { place: None, value: Value::Object(paths) };
             let at = Trail::Root.key("paths");
-            let checked = validate::item(&paths, &(&at).into(), &at, validate::Known::Tree(head));
+            let checked = validate::item(&paths, &(&at).into(), &at, validate::NameScope::Tree(head));
             checked.findings.into_iter().for_each(|finding| walk.report(finding));
         }
         Self { walk }

@@ -48,13 +48,13 @@ impl Walk<'_> {
 
 /// Whether anything in a tree may change with the frame. Variables that nothing uses do not count.
 pub fn depends_on_time(tree: &Node) -> bool {
-    let mut changes = Changing::of(tree);
+    let mut changes = TimeDependence::of(tree);
     parts(tree).any(|part| changes.holds(part))
 }
 
 /// How many expressions depend on time.
 pub(super) fn changing_expressions(tree: &Node) -> usize {
-    let mut changes = Changing::of(tree);
+    let mut changes = TimeDependence::of(tree);
     changes.expressions = 0;
     for (_, variable) in tree.get("variables").into_iter().flat_map(Node::members) {
         changes.search(&variable.node, true);
@@ -73,29 +73,29 @@ fn parts(tree: &Node) -> impl Iterator<Item = &Node> {
 
 /// Whether a value is worked out anew for each scene: it holds a value form, or an expression that names more than
 /// constants and functions.
-pub(crate) fn is_worked_out(node: &Node) -> bool {
+pub(crate) fn has_expressions(node: &Node) -> bool {
     match &node.value {
         Value::String(text) => {
             let constant = |name: &str| name == "pi" || FUNCTIONS.iter().any(|function| function.name == name);
             text.strip_prefix('=').is_some_and(|text| names_in(text).any(|name| !constant(name)))
         }
-        Value::Array(elements) => elements.iter().any(is_worked_out),
+        Value::Array(elements) => elements.iter().any(has_expressions),
         Value::Object(members) => {
-            values::kind_in(members).is_some() || members.values().any(|member| is_worked_out(&member.node))
+            values::kind_in(members).is_some() || members.values().any(|member| has_expressions(&member.node))
         }
         _ => false,
     }
 }
 
 /// What changes with time, by name: the search for it in values.
-pub(crate) struct Changing<'t> {
+pub(crate) struct TimeDependence<'t> {
     names: BTreeSet<&'t str>,
     paths: BTreeSet<&'t str>,
     /// Expressions that changed so far.
     expressions: usize,
 }
 
-impl<'t> Changing<'t> {
+impl<'t> TimeDependence<'t> {
     /// By the variables and paths of a scene.
     pub fn of(tree: &'t Node) -> Self {
         let mut changing = Self { names: BTreeSet::from(CHANGING), paths: BTreeSet::new(), expressions: 0 };

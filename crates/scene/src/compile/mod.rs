@@ -114,15 +114,16 @@ impl Assembly {
     /// while the shutter is open.
     pub fn of(scene: &Description, tracks: &Tracks, files: Files<'_>) -> (Self, Vec<Finding>) {
         let mut findings = Vec::new();
-        let Start { integrator, sources, background, mut materials, mut names } =
-            Start::of(scene, files, &mut findings);
+        let SceneInputs { integrator, sources, background, mut materials, mut names } =
+            SceneInputs::of(scene, files, &mut findings);
         let mut placed = placed(scene, tracks, files, &mut materials, &mut findings);
         let (bounds, farthest) = (bounds(&placed.0), farthest(&placed.0, &placed.1));
         let glows = materials.glows();
         areas::add(scene, tracks, &mut materials, &mut names, &mut placed, &mut findings);
         let (objects, entries) = placed;
         let (cameras, course) = cameras(scene, tracks, &bounds, &farthest, &mut findings);
-        let light = Light { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
+        let light =
+            LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
         let (lights, illuminance, background) = light.lit(glows, background, &names, &mut findings);
         let labels = names.labels(scene, entries);
         let (materials, given) = materials.finish(&mut names, &mut findings);
@@ -155,7 +156,7 @@ impl Assembly {
 }
 
 /// What is known of a scene before its objects are placed.
-struct Start {
+struct SceneInputs {
     integrator: IntegratorChoice,
     sources: Vec<AnyLight>,
     background: Option<AnyBackground>,
@@ -163,7 +164,7 @@ struct Start {
     names: Names,
 }
 
-impl Start {
+impl SceneInputs {
     fn of(scene: &Description, files: Files<'_>, findings: &mut Vec<Finding>) -> Self {
         let integrator = IntegratorChoice::of(scene);
         settings::check(&scene.render, findings);
@@ -177,7 +178,7 @@ impl Start {
 }
 
 /// What the lights of a world follow from.
-struct Light<'s> {
+struct LightingInputs<'s> {
     scene: &'s Description,
     integrator: &'s IntegratorChoice,
     bounds: &'s Aabb,
@@ -186,7 +187,7 @@ struct Light<'s> {
     files: Files<'s>,
 }
 
-impl Light<'_> {
+impl LightingInputs<'_> {
     /// The lights, the brightest of them and the background, of a scene that `glows` or not.
     fn lit(
         &self,
@@ -209,20 +210,21 @@ impl Light<'_> {
 /// A scene whose objects are those of an earlier compilation, with materials, lights and a background of its own: nothing is
 /// placed, prepared or sorted again. Nothing where that is not enough: objects would get other materials than they have, or
 /// other objects shine.
-pub fn relit(
+pub fn with_shading(
     scene: &Description,
     tracks: &Tracks,
     files: Files<'_>,
     earlier: &Compiled,
 ) -> Option<(Compiled, Vec<Finding>)> {
     let mut findings = Vec::new();
-    let Start { integrator, sources, background, mut materials, mut names } = Start::of(scene, files, &mut findings);
+    let SceneInputs { integrator, sources, background, mut materials, mut names } =
+        SceneInputs::of(scene, files, &mut findings);
     materials.get_all(scene, &mut findings);
     let glows = materials.glows();
     areas::ask(scene, &mut materials, &mut names, &mut findings);
     let bounds = earlier.bounds;
     let (cameras, course) = cameras(scene, tracks, &bounds, &Path::root().key("objects"), &mut findings);
-    let light = Light { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
+    let light = LightingInputs { scene, integrator: &integrator, bounds: &bounds, sources: &sources, tracks, files };
     let (lights, illuminance, background) = light.lit(glows, background, &names, &mut findings);
     let labels = names.labels(scene, earlier.world.labels().entries.clone());
     let (materials, given) = materials.finish(&mut names, &mut findings);
@@ -230,7 +232,7 @@ pub fn relit(
     let fits = given == earlier.given
         && given.iter().all(|id| shines(&materials, id) == shines(earlier.world.materials(), id));
     fits.then(|| {
-        let world = Arc::new(earlier.world.relit(materials, lights, background).with_labels(labels));
+        let world = Arc::new(earlier.world.with_shading(materials, lights, background).with_labels(labels));
         let (settings, names) = ((*scene.render).clone(), Arc::new(names));
         let changed =
             Compiled { world, cameras, course, settings, integrator, names, illuminance, given, ..earlier.clone() };

@@ -5,7 +5,7 @@ use crate::item::Item;
 use crate::motion::{AnyItem, ListForm};
 use crate::report::Finding;
 use crate::shared::Shared;
-use crate::validate::{self, Known, validate};
+use crate::validate::{self, NameScope, validate};
 use indexmap::IndexMap;
 use juggler_imaging::Tone;
 use juggler_math::Rgb;
@@ -201,7 +201,7 @@ fn is_empty_list<T>(list: &Shared<Vec<T>>) -> bool {
 impl Description {
     /// Lets everything stand as it is.
     pub(crate) fn stand_still(&mut self) {
-        for wanted in self.worked_out(|_| true) {
+        for wanted in self.templates(|_| true) {
             if let Some(item) = self.item_mut(&wanted.path) {
                 item.set_template(None);
             }
@@ -226,7 +226,9 @@ impl Description {
         let mut findings = Vec::new();
         self.each_item(&mut |at, item| {
             if is_wanted(item) {
-                findings.extend(validate::item(&item.outline().into(), &at.into(), at, Known::Scene(self)).all());
+                findings.extend(
+                    validate::item(&item.json_without_arrays().into(), &at.into(), at, NameScope::Scene(self)).all(),
+                );
             }
         });
         findings

@@ -4,8 +4,8 @@
 //! (camera of its own, size, title) is left aside, so that a whole scene can serve as a library. A file that is
 //! named twice comes in once.
 
+use super::chunks::{self, LongList};
 use super::guard::{self, Refused};
-use super::pieces::{self, LongList};
 use super::source::{FileId, Place, Sources};
 use super::tree::{Member, Node, Value};
 use super::{Unreadable, parse};
@@ -53,7 +53,7 @@ impl<'s> Reader<'s> {
 
     /// The merged tree of the main file, as far as there is one, and its long lists, which are left out of the tree.
     pub fn main(&mut self, name: &str, text: String) -> Option<(Node, Vec<LongList>)> {
-        match pieces::split(&text) {
+        match chunks::split(&text) {
             // What is included stands before what includes it: lists of several files are read as trees.
             Some((rest, lists)) if guard::check(&text).is_ok() && is_alone(&rest) => {
                 let id = self.sources.add(name, text);

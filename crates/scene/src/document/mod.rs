@@ -1,9 +1,9 @@
 //! Scene files as they are written: text, tree with places, includes merged. Nothing here knows what a scene is.
 
+mod chunks;
 mod guard;
 mod include;
 mod parse;
-mod pieces;
 mod put;
 mod source;
 mod tree;
@@ -13,9 +13,9 @@ pub use include::MAX_FILES;
 pub use source::{FileId, Place, Source, Sources};
 pub use tree::{Member, Members, Node, Value};
 
+pub(crate) use chunks::LongList;
 pub(crate) use include::finding;
 pub(crate) use parse::{parse, parse_part};
-pub(crate) use pieces::LongList;
 pub(crate) use put::put;
 
 use crate::report::Finding;

@@ -77,7 +77,7 @@ impl Sources {
 
     /// Bytes that it takes to read all of them, see [`bytes_to_read`](super::bytes_to_read).
     pub fn bytes_to_read(&self) -> u64 {
-        self.files.iter().map(|source| super::pieces::bytes_to_read(&source.text)).sum()
+        self.files.iter().map(|source| super::chunks::bytes_to_read(&source.text)).sum()
     }
 
     /// The folder of the file that `place` lies in.

@@ -1,7 +1,7 @@
-//! A scene that was read from a text learns of its items where they were written and how they move.
+//! Attaches source locations and templates to the items of a scene that was read from text.
 
-use super::{AnyItem, Described, Given, ListForm, Wanted, inside, with_trail};
-use crate::animate::{Changing, is_worked_out};
+use super::{AnyItem, FormValue, ItemContent, ItemSource, ListForm, inside, with_trail};
+use crate::animate::{TimeDependence, has_expressions};
 use crate::description::{Description, Named, Objects, Written};
 use crate::document::{Node, Value};
 use crate::item::{Item, Template};
@@ -11,22 +11,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound;
 use std::sync::Arc;
 
-/// Gives the items of a scene their places and templates. `tree` is what the scene was read from, its expressions not
-/// worked out; `in_place` are the names of textures that were written in place.
+/// Attaches source locations and templates to all items of a scene. `tree` is the document with unevaluated
+/// expressions; `in_place` lists the names of inline textures.
 pub(crate) fn attach(scene: &mut Description, tree: &Node, in_place: &[String]) {
     scene.variables = Written::new(tree.get("variables"));
     scene.paths = Written::new(tree.get("paths"));
     let names = in_place.iter().map(String::as_str).collect();
-    let mut attaching = Attaching { changing: Changing::of(tree), names, taken: BTreeMap::new() };
+    let mut attaching = Attaching { changing: TimeDependence::of(tree), names, taken: BTreeMap::new() };
     attaching.scene(scene, tree);
 }
 
-/// The same for items that were read anew: `head` holds the scene's variables and paths, `in_place` are the names of
-/// textures that were written in place in these items.
-pub(crate) fn attach_items(scene: &mut Description, head: &Node, wanted: &[Wanted], in_place: &[String]) {
+/// Attaches source locations and templates to the given items only. `head` holds the scene's variables and
+/// paths; `in_place` lists the names of inline textures of these items.
+pub(crate) fn attach_items(scene: &mut Description, head: &Node, wanted: &[ItemSource], in_place: &[String]) {
     let names = in_place.iter().map(String::as_str).collect();
-    let mut attaching = Attaching { changing: Changing::of(head), names, taken: BTreeMap::new() };
-    for Wanted { path, template, .. } in wanted {
+    let mut attaching = Attaching { changing: TimeDependence::of(head), names, taken: BTreeMap::new() };
+    for ItemSource { path, template, .. } in wanted {
         with_trail(path.steps(), &Trail::Root, &mut |at| attaching.at(scene, path, &template.node, at));
     }
     for name in in_place {
@@ -43,10 +43,10 @@ pub(crate) fn attach_items(scene: &mut Description, head: &Node, wanted: &[Wante
 }
 
 struct Attaching<'t> {
-    changing: Changing<'t>,
-    /// Names of textures that were written in place.
+    changing: TimeDependence<'t>,
+    /// Names of inline textures.
     names: BTreeSet<&'t str>,
-    /// Those that were taken out of templates, which name them now.
+    /// Inline textures that were moved out of templates; the templates refer to them by name.
     taken: BTreeMap<&'t str, Node>,
 }
 
@@ -80,10 +80,10 @@ impl Attaching<'_> {
 
     fn item(&mut self, item: &mut dyn AnyItem, node: Option<&Node>, at: &Trail<'_>) {
         let template = node.and_then(|node| self.template(node, at));
-        item.learn(node.and_then(|node| node.place), template);
+        item.set_source(node.and_then(|node| node.place), template);
     }
 
-    /// The item or list at a path, which was written like that.
+    /// Attaches `node`, the JSON of the item or list at `path`.
     fn at(&mut self, scene: &mut Description, path: &Path, node: &Node, at: &Trail<'_>) {
         if let Some((objects, i)) = scene.list_mut(path) {
             objects.get_mut(i).into_iter().for_each(|object| self.object(object, Some(node), at));
@@ -94,7 +94,7 @@ impl Attaching<'_> {
         }
     }
 
-    fn named<T: Described>(&mut self, map: &mut Named<T>, node: Option<&Node>, at: &Trail<'_>) {
+    fn named<T: ItemContent>(&mut self, map: &mut Named<T>, node: Option<&Node>, at: &Trail<'_>) {
         for (name, item) in map.iter_mut() {
             self.item(item, node.and_then(|node| node.get(name)), &at.key(name));
         }
@@ -107,29 +107,30 @@ impl Attaching<'_> {
         }
     }
 
-    /// An object that moves by itself has a template with all that it holds; else those within it may have some.
+    /// Attaches an object. An animated object's template includes its child objects; otherwise each child may have
+    /// a template of its own.
     fn object(&mut self, object: &mut Item<Object>, node: Option<&Node>, at: &Trail<'_>) {
         let own = |node: &Node| match &node.value {
             Value::Object(members) if !animate::is_form(members) => members.iter().any(|(key, member)| {
                 let is_list = key == "objects" && matches!(member.node.value, Value::Array(_));
-                !is_list && is_worked_out(&member.node)
+                !is_list && has_expressions(&member.node)
             }),
-            _ => is_worked_out(node),
+            _ => has_expressions(node),
         };
         let moves = node.is_some_and(own);
-        if let Some(inner) = &mut object.quietly().objects {
+        if let Some(inner) = &mut object.value_mut_unmarked().objects {
             let node = node.and_then(|node| node.get("objects")).filter(|_| !moves);
             self.objects(inner, node, &at.key("objects"));
         }
         match moves {
             true => self.item(object, node, at),
-            false => object.learn(node.and_then(|node| node.place), None),
+            false => object.set_source(node.and_then(|node| node.place), None),
         }
     }
 
-    /// How an item moves that was written like that; nothing for one that does not.
+    /// Template of an item with this JSON; `None` for JSON without expressions and value forms.
     fn template(&mut self, node: &Node, at: &Trail<'_>) -> Option<Arc<Template>> {
-        if !is_worked_out(node) {
+        if !has_expressions(node) {
             return None;
         }
         let mut node = node.clone();
@@ -146,10 +147,10 @@ impl Attaching<'_> {
             self.taken.extend(take_texture(&mut node, rest, name).map(|texture| (name, texture)));
         }
         let depends_on_time = self.changing.holds(&node);
-        is_worked_out(&node).then(|| Arc::new(Template { node, depends_on_time }))
+        has_expressions(&node).then(|| Arc::new(Template { node, depends_on_time }))
     }
 
-    /// Textures stand among the scene's, or where they are used.
+    /// Attaches textures, which are written in the scene's `textures` or inline.
     fn textures(&mut self, scene: &mut Description, tree: &Node) {
         let at = Trail::Root.key("textures");
         for (name, texture) in scene.textures.iter_mut() {
@@ -173,22 +174,22 @@ impl Attaching<'_> {
     }
 
     fn list_form(&mut self, scene: &mut Description, path: Path, node: &Node) {
-        if matches!(node.value, Value::Array(_)) || !is_worked_out(node) {
+        if matches!(node.value, Value::Array(_)) || !has_expressions(node) {
             return;
         }
         let given = match path.steps() {
-            [_, Step::Key(group)] => scene.groups.get(group).cloned().map(Given::Objects),
-            [Step::Key(key)] if key == "objects" => Some(Given::Objects(scene.objects.clone())),
-            [Step::Key(key)] if key == "lights" => Some(Given::Lights(scene.lights.clone())),
-            _ => scene.background_light_group.clone().map(Given::Label),
+            [_, Step::Key(group)] => scene.groups.get(group).cloned().map(FormValue::Objects),
+            [Step::Key(key)] if key == "objects" => Some(FormValue::Objects(scene.objects.clone())),
+            [Step::Key(key)] if key == "lights" => Some(FormValue::Lights(scene.lights.clone())),
+            _ => scene.background_light_group.clone().map(FormValue::Label),
         };
         let template = Template { node: node.clone(), depends_on_time: self.changing.holds(node) };
         scene.list_forms.extend(given.map(|given| ListForm { path, template: Arc::new(template), given }));
     }
 }
 
-/// Puts the name of a texture in place of the texture at the end of some steps, and returns the texture; nothing where a
-/// value form gives the texture.
+/// Replaces the inline texture at a path by its name and returns the texture's JSON; `None` if a value form
+/// produces the texture.
 fn take_texture(node: &mut Node, steps: &[Step], name: &str) -> Option<Node> {
     let Some((step, rest)) = steps.split_first() else {
         let is_texture = matches!(&node.value, Value::Object(members) if !animate::is_form(members));

@@ -1,28 +1,28 @@
-//! Long lists of a text, which become items piece by piece, so that no more than a piece of them is ever a tree.
+//! Reads long lists of a document in chunks, so that only one chunk exists as a JSON tree at a time.
 
-use super::{Reader, Wanted, attach_items, head};
+use super::{ItemReader, ItemSource, attach_items, head};
 use crate::description::Description;
 use crate::document::{FileId, LongList, Node, Sources, finding};
 use crate::item::Template;
 use crate::path::Path;
 use crate::report::Finding;
-use crate::validate::Known;
+use crate::validate::NameScope;
 use std::sync::Arc;
 
-/// Most mistakes of a list that are collected.
+/// Maximum number of errors reported per list.
 const MAX_FINDINGS: usize = 200;
 
-/// Adds the items of a long list to a scene at frame 0, all else of which has been read. All that is wrong with them is
-/// returned; then the scene's list stays empty.
+/// Reads the items of a long list into a scene at frame 0, whose other sections are already read. Returns all
+/// findings; after an error the scene's list is empty.
 pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: &Sources) -> Vec<Finding> {
     let text = sources.get(FileId::MAIN).map(|source| source.text.as_str()).unwrap_or_default();
     let head = head(scene);
     let mut findings = Vec::new();
-    for (first, piece) in list.pieces(text, FileId::MAIN) {
-        match piece {
+    for (first, chunk) in list.chunks(text, FileId::MAIN) {
+        match chunk {
             Ok((nodes, refused)) => {
                 findings.extend(refused.into_iter().map(|refused| finding(FileId::MAIN, refused)));
-                read_piece(scene, &head, sources, list.key, first, nodes, &mut findings);
+                read_chunk(scene, &head, sources, list.key, first, nodes, &mut findings);
             }
             Err(refused) => findings.push(finding(FileId::MAIN, refused)),
         }
@@ -39,7 +39,7 @@ pub(crate) fn read_list(scene: &mut Description, list: &LongList, sources: &Sour
     findings
 }
 
-fn read_piece(
+fn read_chunk(
     scene: &mut Description,
     head: &Node,
     sources: &Sources,
@@ -52,10 +52,10 @@ fn read_piece(
     let wanted = |(i, node): (usize, Node)| {
         let place = node.place;
         let template = Arc::new(Template { node, depends_on_time: true });
-        Wanted { path: section.index(first + i), template, moves: false, place }
+        ItemSource { path: section.index(first + i), template, moves: false, place }
     };
-    let wanted: Vec<Wanted> = nodes.into_iter().enumerate().map(wanted).collect();
-    let mut reader = Reader::new(head, sources, 0.0, Known::Scene(scene));
+    let wanted: Vec<ItemSource> = nodes.into_iter().enumerate().map(wanted).collect();
+    let mut reader = ItemReader::new(head, sources, 0.0, NameScope::Scene(scene));
     wanted.iter().for_each(|wanted| reader.add(wanted));
     let (parts, more) = reader.finish();
     findings.extend(more);

@@ -1,25 +1,24 @@
-//! How a scene moves. What moves in an item is written in the item's template: its JSON with expressions and value
-//! forms in place of values. At a frame, the items whose templates depend on time are read anew; all others are shared by
-//! the scenes of all frames.
+//! Animation of a scene's items. An animated item has a template: its JSON with unevaluated expressions and value
+//! forms. For another frame, only items with time-dependent templates are read again; all other items are shared
+//! between frames.
 //!
-//! 1. [`attach`]: a scene that was read from a text gives its items their templates and places.
-//!    Its long lists are read piece by piece: [`lists`].
-//! 2. [`settle`]: where a program has changed an item that moves, the change joins the template.
-//! 3. [`read`]: templates become items at a frame.
-//! 4. [`tracks`]: the same at even times while the shutter is open, for what moves meanwhile.
-//! 5. [`write`](mod@write): a scene as JSON, with everything that moves.
+//! 1. [`attach`] attaches templates and source locations after a document was read; [`lists`] reads long lists.
+//! 2. [`settle`] merges edits by programs into templates.
+//! 3. [`item_reader`] evaluates templates at a frame.
+//! 4. [`tracks`] samples animated items at even times while the shutter is open.
+//! 5. [`write`](mod@write) writes a scene with its animation as JSON.
 
 mod attach;
+mod item_reader;
 mod lists;
-mod read;
 mod settle;
 mod tracks;
 mod write;
 
 pub(crate) use attach::{attach, attach_items};
+pub(crate) use item_reader::{ItemReader, ItemSource, ItemValue};
 pub(crate) use lists::read_list;
-pub(crate) use read::{Part, Reader, Wanted};
-pub(crate) use settle::settled;
+pub(crate) use settle::edits_merged;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};
 pub(crate) use write::{head, node, object_node, written};
 
@@ -38,20 +37,21 @@ use juggler_tracer::texture::AnyTexture;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// A value that is no item, and is written as one value form: a list of objects or lights, a name.
+/// Value form in place of a whole list of objects or lights, or of a light group's name.
 #[derive(Clone, Debug)]
 pub(crate) struct ListForm {
-    /// Where it stands: `objects`, `lights`, `groups.NAME`, `background_light_group`.
+    /// Path of the form: `objects`, `lights`, `groups.NAME` or `background_light_group`.
     pub path: Path,
-    /// The form.
+    /// JSON of the form.
     pub template: Arc<Template>,
-    /// What it gave at the scene's frame. A value that is another one now was changed by a program, and stays.
-    pub given: Given,
+    /// Value of the form at the scene's frame. If the scene holds another value, a program has replaced it, and
+    /// the replacement stays.
+    pub given: FormValue,
 }
 
-/// What a form gave.
+/// Value of a list form.
 #[derive(Clone, Debug)]
-pub(crate) enum Given {
+pub(crate) enum FormValue {
     /// Objects.
     Objects(Objects),
     /// Lights.
@@ -66,7 +66,7 @@ impl PartialEq for ListForm {
     }
 }
 
-/// An item of any kind.
+/// Common interface of items of all kinds.
 pub(crate) trait AnyItem {
     /// As [`Item::template`].
     fn template(&self) -> Option<&Arc<Template>>;
@@ -74,45 +74,45 @@ pub(crate) trait AnyItem {
     fn place(&self) -> Option<Place>;
     /// As [`Item::is_changed`].
     fn is_changed(&self) -> bool;
-    /// Its value as JSON.
+    /// JSON of the value.
     fn json(&self) -> serde_json::Value;
-    /// The same to be checked: without the arrays of meshes, which have checks of their own.
-    fn outline(&self) -> serde_json::Value;
-    /// As [`Item::learn`].
-    fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>);
+    /// JSON of the value without mesh arrays, for validation; arrays are checked when a mesh is prepared.
+    fn json_without_arrays(&self) -> serde_json::Value;
+    /// As [`Item::set_source`].
+    fn set_source(&mut self, place: Option<Place>, template: Option<Arc<Template>>);
     /// As [`Item::set_template`].
     fn set_template(&mut self, template: Option<Arc<Template>>);
 }
 
-/// The value of an item.
-pub(crate) trait Described: Serialize + Clone {
-    /// As [`AnyItem::outline`].
-    fn outline(&self) -> serde_json::Value {
+/// Value types of items.
+pub(crate) trait ItemContent: Serialize + Clone {
+    /// As [`AnyItem::json_without_arrays`].
+    fn json_without_arrays(&self) -> serde_json::Value {
         serde_json::to_value(self).unwrap_or_default()
     }
 }
 
-impl Described for Render {}
-impl Described for Tone {}
-impl Described for Backdrop {}
-impl Described for AnyCamera {}
-impl Described for AnyTexture {}
-impl Described for AnyMaterial {}
-impl Described for AnyLight {}
+impl ItemContent for Render {}
+impl ItemContent for Tone {}
+impl ItemContent for Backdrop {}
+impl ItemContent for AnyCamera {}
+impl ItemContent for AnyTexture {}
+impl ItemContent for AnyMaterial {}
+impl ItemContent for AnyLight {}
 
-impl Described for Object {
-    fn outline(&self) -> serde_json::Value {
-        let mut outline = self.clone();
-        if let Some(AnyShape::Mesh(mesh)) = &mut outline.shape {
+impl ItemContent for Object {
+    fn json_without_arrays(&self) -> serde_json::Value {
+        let mut json_without_arrays = self.clone();
+        if let Some(AnyShape::Mesh(mesh)) = &mut json_without_arrays.shape {
             mesh.clear_arrays();
         }
         // The objects within are checked by themselves.
-        outline.objects = outline.objects.map(|_| Objects::default());
-        serde_json::to_value(outline).unwrap_or_default()
+        json_without_arrays.objects = json_without_arrays.objects.map(|_| Objects::default());
+        serde_json::to_value(json_without_arrays).unwrap_or_default()
     }
 }
 
-impl<T: Described> AnyItem for Item<T> {
+impl<T: ItemContent> AnyItem for Item<T> {
     fn template(&self) -> Option<&Arc<Template>> {
         self.template()
     }
@@ -129,12 +129,12 @@ impl<T: Described> AnyItem for Item<T> {
         serde_json::to_value(&**self).unwrap_or_default()
     }
 
-    fn outline(&self) -> serde_json::Value {
-        Described::outline(&**self)
+    fn json_without_arrays(&self) -> serde_json::Value {
+        ItemContent::json_without_arrays(&**self)
     }
 
-    fn learn(&mut self, place: Option<Place>, template: Option<Arc<Template>>) {
-        self.learn(place, template);
+    fn set_source(&mut self, place: Option<Place>, template: Option<Arc<Template>>) {
+        self.set_source(place, template);
     }
 
     fn set_template(&mut self, template: Option<Arc<Template>>) {
@@ -143,7 +143,7 @@ impl<T: Described> AnyItem for Item<T> {
 }
 
 impl Description {
-    /// Visits every item with its path, objects after those within them.
+    /// Visits every item with its path, child objects before their parents.
     pub(crate) fn each_item(&self, visit: &mut dyn FnMut(&Trail<'_>, &dyn AnyItem)) {
         let root = Trail::Root;
         visit(&root.key("render"), &self.render);
@@ -163,9 +163,9 @@ impl Description {
         each_object(&self.objects, &root.key("objects"), visit);
     }
 
-    /// The item that holds the value at a path, and how many steps of the path lead to the item.
+    /// Innermost item on a path, and the number of steps from the root to the item.
     pub(crate) fn item_of(&self, path: &Path) -> Option<(&dyn AnyItem, usize)> {
-        fn any<T: Described>(item: &Item<T>) -> &dyn AnyItem {
+        fn any<T: ItemContent>(item: &Item<T>) -> &dyn AnyItem {
             item
         }
         let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
@@ -184,9 +184,9 @@ impl Description {
         }
     }
 
-    /// The item at a path, for what the scene knows of it beside its value.
+    /// Item at a path, for changes of its template or source location.
     pub(crate) fn item_mut(&mut self, path: &Path) -> Option<&mut dyn AnyItem> {
-        fn any<T: Described>(item: Option<&mut Item<T>>) -> Option<&mut dyn AnyItem> {
+        fn any<T: ItemContent>(item: Option<&mut Item<T>>) -> Option<&mut dyn AnyItem> {
             Some(item?)
         }
         let (Step::Key(section), rest) = path.steps().split_first()? else { return None };
@@ -206,7 +206,7 @@ impl Description {
         }
     }
 
-    /// The list that holds the object at a path, and the object's number in it.
+    /// List that contains the object at a path, and the object's index.
     pub(crate) fn list_mut(&mut self, path: &Path) -> Option<(&mut Objects, usize)> {
         match path.steps() {
             [Step::Key(section), rest @ ..] if section == "objects" => list_among(&mut self.objects, rest),
@@ -217,7 +217,7 @@ impl Description {
         }
     }
 
-    /// Whether all that may move is the very same in both, in memory, and the shutter opens and closes at the same times.
+    /// Whether both scenes share all animated items (by pointer) and have the same shutter times.
     pub(crate) fn moves_as(&self, other: &Self) -> bool {
         fn same<T>(a: Option<&Item<T>>, b: Option<&Item<T>>) -> bool {
             match (a, b) {
@@ -254,7 +254,9 @@ fn each_object(objects: &[Item<Object>], at: &Trail<'_>, visit: &mut dyn FnMut(&
 fn list_among<'s>(objects: &'s mut Objects, steps: &[Step]) -> Option<(&'s mut Objects, usize)> {
     match steps {
         [Step::Index(i)] => Some((objects, *i)),
-        [Step::Index(i), Step::Key(_), rest @ ..] => list_among(objects.get_mut(*i)?.quietly().objects.as_mut()?, rest),
+        [Step::Index(i), Step::Key(_), rest @ ..] => {
+            list_among(objects.get_mut(*i)?.value_mut_unmarked().objects.as_mut()?, rest)
+        }
         _ => None,
     }
 }
@@ -271,7 +273,7 @@ fn object_of<'s>(objects: &'s [Item<Object>], steps: &[Step], depth: usize) -> O
     Some(inner.unwrap_or((object, depth + 1)))
 }
 
-/// Calls `visit` with a path as the walks over a scene take it.
+/// Calls `visit` with the trail of a path.
 pub(crate) fn with_trail<R>(steps: &[Step], at: &Trail<'_>, visit: &mut dyn FnMut(&Trail<'_>) -> R) -> R {
     match steps.split_first() {
         None => visit(at),
@@ -280,7 +282,7 @@ pub(crate) fn with_trail<R>(steps: &[Step], at: &Trail<'_>, visit: &mut dyn FnMu
     }
 }
 
-/// The node at the end of some steps; nothing where a value form stands in the way.
+/// Node at a relative path; `None` if the path leads through a value form.
 pub(crate) fn inside<'n>(node: &'n Node, steps: &[Step]) -> Option<&'n Node> {
     use crate::document::Value;
     let Some((step, rest)) = steps.split_first() else { return Some(node) };

@@ -1,18 +1,18 @@
-//! Changes that a program made to items that move join their templates: what the program changed stands still from then
-//! on, what it left alone moves as before.
+//! Merges edits by programs into the templates of animated items. An edited value becomes constant; values that the
+//! program left alone stay animated.
 
-use super::{Given, Reader, Wanted, write};
-use crate::animate::{Changing, is_form, is_worked_out};
+use super::{FormValue, ItemReader, ItemSource, write};
+use crate::animate::{TimeDependence, has_expressions, is_form};
 use crate::description::Description;
 use crate::document::{Node, Sources, Value};
 use crate::item::Template;
 use crate::path::{Path, Step};
-use crate::validate::Known;
+use crate::validate::NameScope;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// The scene with templates that hold all changes which programs have made; the scene itself where there are none.
-pub(crate) fn settled<'s>(scene: &'s Description, sources: &Sources, frame: f64) -> Cow<'s, Description> {
+/// Returns the scene with all edits merged into its templates; borrows the scene if it has no such edits.
+pub(crate) fn edits_merged<'s>(scene: &'s Description, sources: &Sources, frame: f64) -> Cow<'s, Description> {
     let mut changed: Vec<(Path, Arc<Template>, serde_json::Value)> = Vec::new();
     scene.each_item(&mut |at, item| {
         if let Some(template) = item.template().filter(|_| item.is_changed()) {
@@ -23,23 +23,23 @@ pub(crate) fn settled<'s>(scene: &'s Description, sources: &Sources, frame: f64)
     if changed.is_empty() && !stale {
         return Cow::Borrowed(scene);
     }
-    let mut settled = scene.clone();
+    let mut edits_merged = scene.clone();
     let head = write::head(scene);
-    let mut changing = Changing::of(&head);
+    let mut changing = TimeDependence::of(&head);
     for (path, template, after) in changed {
         let merged = before(scene, &head, sources, frame, &path, &template)
             .map(|before| merged(&template.node, &before, &after))
-            .filter(is_worked_out);
+            .filter(has_expressions);
         let template = merged.map(|node| Arc::new(Template { depends_on_time: changing.holds(&node), node }));
-        if let Some(item) = settled.item_mut(&path) {
+        if let Some(item) = edits_merged.item_mut(&path) {
             item.set_template(template);
         }
     }
-    settled.list_forms.retain(|form| holds(scene, &form.path, &form.given));
-    Cow::Owned(settled)
+    edits_merged.list_forms.retain(|form| holds(scene, &form.path, &form.given));
+    Cow::Owned(edits_merged)
 }
 
-/// The item's JSON before it was changed; nothing when the template does not give any more what it gave.
+/// JSON of the item before the edit; `None` if its template can no longer be evaluated.
 fn before(
     scene: &Description,
     head: &Node,
@@ -48,14 +48,15 @@ fn before(
     path: &Path,
     template: &Arc<Template>,
 ) -> Option<serde_json::Value> {
-    let wanted = Wanted { path: path.clone(), template: Arc::clone(template), moves: true, place: None };
-    let mut reader = Reader::new(head, sources, frame, Known::Scene(scene));
+    let wanted = ItemSource { path: path.clone(), template: Arc::clone(template), moves: true, place: None };
+    let mut reader = ItemReader::new(head, sources, frame, NameScope::Scene(scene));
     reader.add(&wanted);
     let (_, part) = reader.finish().0?.into_iter().next()?;
     Some(part.json())
 }
 
-/// What a program made of an item, with all that moves in the item and that the program has left as it was.
+/// Merges an edit: the JSON after the edit, with the template's expressions and value forms wherever the edit left
+/// the value unchanged.
 fn merged(template: &Node, before: &serde_json::Value, after: &serde_json::Value) -> Node {
     let mut moving = Vec::new();
     sources_in(template, &mut Path::root(), &mut moving);
@@ -68,7 +69,7 @@ fn merged(template: &Node, before: &serde_json::Value, after: &serde_json::Value
     node
 }
 
-/// The outermost expressions and value forms of a template, and where they stand.
+/// Collects the outermost expressions and value forms of a template with their paths.
 fn sources_in<'n>(node: &'n Node, at: &mut Path, found: &mut Vec<(Path, &'n Node)>) {
     match &node.value {
         Value::String(text) if text.starts_with('=') => found.push((at.clone(), node)),
@@ -91,7 +92,7 @@ fn sources_in<'n>(node: &'n Node, at: &mut Path, found: &mut Vec<(Path, &'n Node
     }
 }
 
-/// A value inside JSON as the types write it: there, a single step of a transform stands in an array.
+/// Value at a path in serialized JSON, in which a single transform step is an array of one.
 fn value_at<'j>(json: &'j serde_json::Value, steps: &[Step]) -> Option<&'j serde_json::Value> {
     let Some((step, rest)) = steps.split_first() else { return Some(json) };
     match (json, step) {
@@ -102,7 +103,7 @@ fn value_at<'j>(json: &'j serde_json::Value, steps: &[Step]) -> Option<&'j serde
     }
 }
 
-/// Puts what moves in its place, if the place is there.
+/// Stores an expression or value form at a path, if the path exists.
 fn put(node: &mut Node, steps: &[Step], source: &Node) {
     let Some((step, rest)) = steps.split_first() else {
         *node = source.clone();
@@ -135,14 +136,14 @@ fn put(node: &mut Node, steps: &[Step], source: &Node) {
     }
 }
 
-/// Whether a list is what its form gave.
-fn holds(scene: &Description, path: &Path, given: &Given) -> bool {
+/// Whether the scene still holds the value of a list form.
+fn holds(scene: &Description, path: &Path, given: &FormValue) -> bool {
     match (given, path.steps()) {
-        (Given::Objects(objects), [_, Step::Key(group)]) => {
+        (FormValue::Objects(objects), [_, Step::Key(group)]) => {
             scene.groups.get(group).is_some_and(|known| known.is_same(objects))
         }
-        (Given::Objects(objects), _) => scene.objects.is_same(objects),
-        (Given::Lights(lights), _) => scene.lights.is_same(lights),
-        (Given::Label(label), _) => scene.background_light_group.as_ref() == Some(label),
+        (FormValue::Objects(objects), _) => scene.objects.is_same(objects),
+        (FormValue::Lights(lights), _) => scene.lights.is_same(lights),
+        (FormValue::Label(label), _) => scene.background_light_group.as_ref() == Some(label),
     }
 }

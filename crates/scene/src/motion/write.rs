@@ -1,4 +1,4 @@
-//! A scene as JSON, with everything that moves.
+//! Writes a scene with its animation as JSON.
 
 use super::AnyItem;
 use crate::Object;
@@ -10,7 +10,7 @@ use crate::schema;
 use serde_json::{Map, Value as Json};
 use std::sync::Arc;
 
-/// A scene's `animation`, `variables` and `paths`, by which all else is worked out.
+/// JSON of a scene's `animation`, `variables` and `paths`, which expressions may refer to.
 pub(crate) fn head(scene: &Description) -> Node {
     let mut members = Members::default();
     let mut add = |key: &str, node: Node| {
@@ -25,12 +25,12 @@ pub(crate) fn head(scene: &Description) -> Node {
     Node { place: None, value: Value::Object(members.into()) }
 }
 
-/// An item as JSON, with what moves in it.
+/// JSON of an item with its expressions and value forms.
 pub(crate) fn node(item: &dyn AnyItem) -> Node {
     item.template().map_or_else(|| item.json().into(), |template| template.node.clone())
 }
 
-/// The same of an object, with what moves in the objects that it holds.
+/// JSON of an object with the expressions and value forms of the object and its children.
 pub(crate) fn object_node(object: &Item<Object>) -> Node {
     let mut node = node(object);
     if let (None, Value::Object(members)) = (object.template(), &mut node.value)
@@ -41,13 +41,13 @@ pub(crate) fn object_node(object: &Item<Object>) -> Node {
     node
 }
 
-/// The scene as JSON: values, and what stands in their place where they move. All changes must be in the scene's templates
-/// (see [`settled`](super::settled)).
+/// JSON of a scene with its animation. Edits must have been merged into templates
+/// ([`edits_merged`](super::edits_merged)).
 pub(crate) fn written(scene: &Description) -> Json {
     let mut json = serde_json::to_value(scene).unwrap_or_default();
     schema::tidy(&mut json);
     schema::drop_nulls(&mut json);
-    for wanted in scene.worked_out(|_| true) {
+    for wanted in scene.templates(|_| true) {
         put(&mut json, wanted.path.steps(), wanted.template.node.to_json());
     }
     if let Some(textures) = json.get_mut("textures").and_then(Json::as_object_mut) {

@@ -4,9 +4,9 @@ use crate::description::Description;
 
 /// The names that a scene gave when it was read, to which what was checked then may refer.
 #[derive(Debug)]
-pub(crate) struct GivenNames([Vec<String>; 4]);
+pub(crate) struct DeclaredNames([Vec<String>; 4]);
 
-impl GivenNames {
+impl DeclaredNames {
     /// Of a scene.
     pub fn of(scene: &Description) -> Self {
         let Description { materials, textures, groups, cameras, .. } = scene;

@@ -23,9 +23,9 @@ mod structure;
 mod words;
 
 pub use foreign::page as names_page;
-pub(crate) use given::GivenNames;
+pub(crate) use given::DeclaredNames;
 pub use names::Family;
-pub(crate) use names::Known;
+pub(crate) use names::NameScope;
 pub(crate) use words::{family as definition_family, list, noun as family_noun, plural};
 
 /// Most warnings that are collected.
@@ -56,7 +56,7 @@ impl Validated {
 
 /// Checks a scene whose expressions are resolved.
 pub fn validate(tree: &Node) -> Validated {
-    let mut walk = Walk::new(Known::Tree(tree));
+    let mut walk = Walk::new(NameScope::Tree(tree));
     let mut json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
     let textures = match &mut json {
         Some(Value::Object(scene)) => walk.add_textures(scene),
@@ -67,7 +67,7 @@ pub fn validate(tree: &Node) -> Validated {
 
 /// Checks one item of a scene, or one list of items, whose expressions are resolved. `belongs` is its path in the scene
 /// and `at` where messages say that it stands.
-pub(crate) fn item(node: &Node, belongs: &Path, at: &Trail<'_>, known: Known<'_>) -> Validated {
+pub(crate) fn item(node: &Node, belongs: &Path, at: &Trail<'_>, known: NameScope<'_>) -> Validated {
     let Some(rule) = rule_of(belongs) else { return Validated::default() };
     let mut walk = Walk::new(known);
     let json = walk.value(node, at, rule);
@@ -98,7 +98,7 @@ pub(crate) fn part(node: &Node, definition: &str, at: &Trail<'_>) -> Validated {
 }
 
 fn by_rule(node: &Node, rule: &'static Rule, at: &Trail<'_>) -> Validated {
-    let mut walk = Walk::new(Known::Tree(node));
+    let mut walk = Walk::new(NameScope::Tree(node));
     let json = walk.value(node, at, rule);
     Validated { json, textures: Vec::new(), findings: walk.findings, warnings: walk.warnings }
 }
@@ -111,7 +111,7 @@ pub(crate) fn meant_in_scene(key: &str) -> Option<String> {
 struct Walk<'t> {
     schema: &'static Schema,
     /// Where names are looked up.
-    known: Known<'t>,
+    known: NameScope<'t>,
     findings: Vec<Finding>,
     /// Textures that are written in place, by the names that they get.
     textures: Vec<(String, Value)>,
@@ -119,7 +119,7 @@ struct Walk<'t> {
 }
 
 impl<'t> Walk<'t> {
-    fn new(known: Known<'t>) -> Self {
+    fn new(known: NameScope<'t>) -> Self {
         Self { schema: Schema::get(), known, findings: Vec::new(), textures: Vec::new(), warnings: Vec::new() }
     }
 }

@@ -35,14 +35,14 @@ impl Family {
 
 /// The names of a scene.
 #[derive(Clone, Copy)]
-pub enum Known<'t> {
+pub enum NameScope<'t> {
     /// Those of a whole scene as a tree.
     Tree(&'t Node),
     /// Those of a scene.
     Scene(&'t Description),
 }
 
-impl<'t> Known<'t> {
+impl<'t> NameScope<'t> {
     fn has(self, part: &str, name: &str) -> bool {
         match self {
             Self::Tree(tree) => tree.get(part).is_some_and(|part| part.get(name).is_some()),

@@ -130,7 +130,7 @@ impl World {
 
     /// The same objects with other materials, lights and background: nothing is built anew but what depends on those. Every
     /// `Object::material` must be in `materials`. The result is bit for bit that of [`World::new`].
-    pub fn relit(
+    pub fn with_shading(
         &self,
         materials: MaterialTable,
         lights: impl IntoIterator<Item = impl Into<Lamp>>,
@@ -218,7 +218,7 @@ impl World {
     }
 
     /// Whether both hold the very same objects in memory.
-    pub fn shares_objects_with(&self, other: &Self) -> bool {
+    pub fn shares_geometry_with(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.top, &other.top)
     }
 

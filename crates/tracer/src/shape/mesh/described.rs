@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(default)]
 #[schemars(rename = "Mesh")]
-pub struct Described {
+pub struct MeshDescription {
     /// A model file (PLY, OBJ, STL), relative to the scene file, instead of the arrays below.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
@@ -44,9 +44,9 @@ pub struct Described {
     morphs: Vec<Morph>,
 }
 
-impl From<Described> for Mesh {
-    fn from(described: Described) -> Self {
-        let Described { file, positions, triangles, normals, uvs, crease_angle_degrees, morphs } = described;
+impl From<MeshDescription> for Mesh {
+    fn from(described: MeshDescription) -> Self {
+        let MeshDescription { file, positions, triangles, normals, uvs, crease_angle_degrees, morphs } = described;
         let arrays = Arc::new(MeshData { positions, triangles, normals, uvs });
         Self { file, arrays, crease_angle_degrees, morphs, prepared: None }
     }
@@ -54,15 +54,15 @@ impl From<Described> for Mesh {
 
 impl JsonSchema for Mesh {
     fn schema_name() -> Cow<'static, str> {
-        Described::schema_name()
+        MeshDescription::schema_name()
     }
 
     fn schema_id() -> Cow<'static, str> {
-        Described::schema_id()
+        MeshDescription::schema_id()
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        Described::json_schema(generator)
+        MeshDescription::json_schema(generator)
     }
 }
 

@@ -20,7 +20,7 @@ use super::solid_angle::{area_pdf, area_sample, pick};
 use super::{Hit, InvalidShape, Shape, SurfacePoint, SurfaceSample, check};
 use crate::surface::Surface;
 use crease::Creases;
-use described::Described;
+use described::MeshDescription;
 use juggler_bvh::SimdLevel;
 use juggler_math::{Aabb, Ray, Vec2, Vec3, warp};
 use prepared::Prepared;
@@ -45,7 +45,7 @@ pub use morph::Morph;
 ///
 /// Clones share the arrays and, once prepared, the hierarchy.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(from = "Described")]
+#[serde(from = "MeshDescription")]
 pub struct Mesh {
     /// A model file (PLY, OBJ, STL), relative to the scene file, instead of arrays.
     pub file: Option<String>,

@@ -1,5 +1,5 @@
-//! Long lists of a text, read piece by piece: a tree of hundreds of thousands of objects would take many times the memory
-//! of the objects themselves.
+//! Long lists of a document, parsed in chunks. A JSON tree of hundreds of thousands of objects would take several
+//! times the memory of the objects themselves.
 
 use super::guard::{Refused, skip_comment, skip_string};
 use super::parse::parse_part;
@@ -8,46 +8,45 @@ use super::tree::Node;
 use crate::path::{Path, Step};
 use std::ops::Range;
 
-/// Lists that may be long.
+/// Sections that may hold long lists.
 const LISTS: [&str; 2] = ["objects", "lights"];
-/// A list of fewer elements is read with all else.
+/// Minimum number of elements of a long list.
 const MIN_ELEMENTS: usize = 1000;
-/// Bytes of text that are read at once, if they are more than one element.
-const PIECE: usize = 1 << 17;
-/// Bytes that an element takes beside its text while a scene is read, about and not fewer: as an item, with the indices of
-/// where it stands.
+/// Maximum text size of a chunk in bytes; a chunk has at least one element.
+const CHUNK: usize = 1 << 17;
+/// Upper estimate of the memory per element in bytes, beside its text: the item and its text range.
 const ELEMENT: u64 = 1000;
 
-/// The elements of a piece as trees, with what is wrong in them; or the first mistake of syntax.
-pub type Piece = Result<(Vec<Node>, Vec<Refused>), Refused>;
+/// Parsed elements of a chunk with their findings, or the first syntax error.
+pub type Chunk = Result<(Vec<Node>, Vec<Refused>), Refused>;
 
-/// A list of a text that is too long for a tree.
+/// List with many elements, kept as text ranges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LongList {
     /// The section of the scene: `objects` or `lights`.
     pub key: &'static str,
-    /// Where the elements stand in the text, in order.
+    /// Byte ranges of the elements, in order.
     elements: Vec<Range<usize>>,
 }
 
 impl LongList {
-    /// The list's pieces: the number of the first element of each, and its elements.
-    pub fn pieces<'t>(&'t self, text: &'t str, file: FileId) -> impl Iterator<Item = (usize, Piece)> + 't {
+    /// Parses the list in chunks. Yields the index of each chunk's first element, and its elements.
+    pub fn chunks<'t>(&'t self, text: &'t str, file: FileId) -> impl Iterator<Item = (usize, Chunk)> + 't {
         let mut first = 0;
         std::iter::from_fn(move || {
             let rest = self.elements.get(first..).filter(|rest| !rest.is_empty())?;
             let begin = rest.first().map_or(0, |element| element.start);
-            let count = rest.iter().take_while(|element| element.end - begin <= PIECE).count().max(1);
-            let piece = rest.get(..count).unwrap_or_default();
+            let count = rest.iter().take_while(|element| element.end - begin <= CHUNK).count().max(1);
+            let chunk = rest.get(..count).unwrap_or_default();
             let number = first;
             first += count;
-            Some((number, self.trees(text, file, number, piece)))
+            Some((number, self.trees(text, file, number, chunk)))
         })
     }
 
-    fn trees(&self, text: &str, file: FileId, first: usize, piece: &[Range<usize>]) -> Piece {
-        let (mut nodes, mut refused) = (Vec::with_capacity(piece.len()), Vec::new());
-        for (i, element) in piece.iter().enumerate() {
+    fn trees(&self, text: &str, file: FileId, first: usize, chunk: &[Range<usize>]) -> Chunk {
+        let (mut nodes, mut refused) = (Vec::with_capacity(chunk.len()), Vec::new());
+        for (i, element) in chunk.iter().enumerate() {
             let path = Path::from_steps(&[Step::Key(self.key.to_owned()), Step::Index(first + i)]);
             let (node, more) = parse_part(text, element.clone(), file, path)?;
             nodes.push(node);
@@ -57,8 +56,8 @@ impl LongList {
     }
 }
 
-/// The text with its long lists left empty, all else where it stands, and the lists. Nothing for a text without long lists,
-/// or one with mistakes that show here.
+/// Splits a document into its text with emptied long lists (all byte offsets unchanged) and the lists. `None` for a
+/// document without long lists, or with a syntax error that the scan notices.
 pub fn split(text: &str) -> Option<(String, Vec<LongList>)> {
     let bytes = text.as_bytes();
     let (mut depth, mut i) = (0_usize, 0);
@@ -100,7 +99,7 @@ pub fn split(text: &str) -> Option<(String, Vec<LongList>)> {
     Some((String::from_utf8(rest).ok()?, found.into_iter().map(|(list, _)| list).collect()))
 }
 
-/// The elements of the array whose first byte is at `i`, and where its closing bracket stands.
+/// Byte ranges of the elements of the array whose content starts at `i`, and the offset of its closing bracket.
 fn elements(bytes: &[u8], mut i: usize) -> Option<(Vec<Range<usize>>, usize)> {
     let (mut depth, mut elements) = (0_usize, Vec::new());
     let (mut start, mut end) = (None, 0);
@@ -136,7 +135,7 @@ fn elements(bytes: &[u8], mut i: usize) -> Option<(Vec<Range<usize>>, usize)> {
     }
 }
 
-/// Bytes that it takes to read a text, as [`bytes_to_read`](super::bytes_to_read), long lists piece by piece.
+/// Upper estimate of the memory in bytes to read a document, with long lists read in chunks.
 pub fn bytes_to_read(text: &str) -> u64 {
     let whole = |text: &str| super::bytes_to_read(text.as_bytes());
     let Some((rest, lists)) = split(text) else { return whole(text) };
@@ -147,8 +146,8 @@ pub fn bytes_to_read(text: &str) -> u64 {
         let first = list.elements.first().map_or(0, |element| element.start);
         let end = list.elements.last().map_or(0, |element| element.end);
         let length = end.saturating_sub(first) as u64;
-        // One piece is a tree at a time.
-        let share = longest.max(PIECE) as f64 / length.max(1) as f64;
+        // One chunk is a tree at a time.
+        let share = longest.max(CHUNK) as f64 / length.max(1) as f64;
         let tree = whole(text.get(first..end).unwrap_or_default()) as f64 * share.min(1.0);
         bytes += length + tree as u64 + list.elements.len() as u64 * ELEMENT;
     }
@@ -175,9 +174,9 @@ mod tests {
         assert_eq!(without.get("title"), whole.get("title"));
         assert_eq!(without.get("objects").unwrap().elements().len(), 0);
         let mut nodes = Vec::new();
-        for (first, piece) in lists[0].pieces(&text, FileId::MAIN) {
+        for (first, chunk) in lists[0].chunks(&text, FileId::MAIN) {
             assert_eq!(first, nodes.len());
-            nodes.extend(piece.unwrap().0);
+            nodes.extend(chunk.unwrap().0);
         }
         assert_eq!(nodes, whole.get("objects").unwrap().elements());
         let long = self::text(20_000);

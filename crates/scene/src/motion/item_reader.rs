@@ -1,7 +1,7 @@
-//! Items read from their JSON, as many at once as are wanted: expressions are worked out for a frame, values held
-//! against the schema, then all become types together.
+//! Reads items from JSON in batches: evaluates expressions for a frame, validates against the schema, and
+//! deserializes all items of the batch together.
 
-use super::{Given, with_trail};
+use super::{FormValue, with_trail};
 use crate::animate::Resolver;
 use crate::description::{Backdrop, Description, Object, Objects, Render};
 use crate::document::{Node, Place, Sources};
@@ -9,7 +9,7 @@ use crate::item::{Item, Template};
 use crate::path::{Path, Step, Trail};
 use crate::report::Finding;
 use crate::shared::Shared;
-use crate::validate::{self, Known};
+use crate::validate::{self, NameScope};
 use juggler_imaging::Tone;
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
@@ -19,27 +19,27 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
-/// An item, or a list of items, that is to be read.
+/// JSON source of an item or of a list of items.
 #[derive(Clone, Debug)]
-pub(crate) struct Wanted {
-    /// Where it belongs.
+pub(crate) struct ItemSource {
+    /// Path of the item in the scene.
     pub path: Path,
-    /// Its JSON, with expressions and forms.
+    /// JSON of the item, with unevaluated expressions and value forms.
     pub template: Arc<Template>,
-    /// Whether the item moves: it keeps its template.
+    /// Whether the item keeps its template.
     pub moves: bool,
     pub place: Option<Place>,
 }
 
-/// An item that was read, or a list of items.
+/// Value of an item or of a list of items.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Part {
+pub(crate) enum ItemValue {
     Render(Item<Render>),
     Tone(Item<Tone>),
     Background(Item<Backdrop>),
     Camera(Item<AnyCamera>),
     Texture(Item<AnyTexture>),
-    /// One that a value form gave in place.
+    /// Inline texture that a value form produces.
     FormTexture(Item<AnyTexture>),
     Material(Item<AnyMaterial>),
     Light(Item<AnyLight>),
@@ -49,7 +49,7 @@ pub(crate) enum Part {
     Label(String),
 }
 
-/// Where an item stands among those that are read together.
+/// Kind of an item, which decides where its JSON is stored in the batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Render,
@@ -61,7 +61,7 @@ enum Kind {
     Light,
     Object,
     Objects,
-    /// So many.
+    /// Number of lights in the list.
     Lights(usize),
     Label,
 }
@@ -87,25 +87,25 @@ impl Kind {
 }
 
 /// Reads items of a scene for one frame.
-pub(crate) struct Reader<'s> {
+pub(crate) struct ItemReader<'s> {
     resolver: Resolver<'s>,
-    known: Known<'s>,
+    known: NameScope<'s>,
     findings: Vec<Finding>,
-    /// What was read so far: the wanted item, what it is, its JSON.
-    read: Vec<(&'s Wanted, Kind, Value)>,
-    /// Textures that were written in place by value forms.
+    /// Validated items so far: source, kind, JSON.
+    read: Vec<(&'s ItemSource, Kind, Value)>,
+    /// Inline textures by name.
     textures: Vec<(String, Value)>,
 }
 
-impl<'s> Reader<'s> {
-    /// For a frame of the scene whose `animation`, `variables` and `paths` `head` holds.
-    pub fn new(head: &'s Node, sources: &'s Sources, frame: f64, known: Known<'s>) -> Self {
+impl<'s> ItemReader<'s> {
+    /// Creates a reader for a frame; `head` holds the scene's `animation`, `variables` and `paths`.
+    pub fn new(head: &'s Node, sources: &'s Sources, frame: f64, known: NameScope<'s>) -> Self {
         let resolver = Resolver::new(head, sources, frame);
         Self { resolver, known, findings: Vec::new(), read: Vec::new(), textures: Vec::new() }
     }
 
-    /// Reads an item.
-    pub fn add(&mut self, wanted: &'s Wanted) {
+    /// Evaluates and validates an item.
+    pub fn add(&mut self, wanted: &'s ItemSource) {
         let Some(kind) = Kind::of(&wanted.path) else { return };
         let stands = written_at(&wanted.path);
         let before = self.findings.len();
@@ -130,8 +130,8 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The items with their paths, unless something is wrong, and all that is to be said.
-    pub fn finish(self) -> (Option<Vec<(Path, Part)>>, Vec<Finding>) {
+    /// Deserializes the batch. Returns the items with their paths, or `None` after an error, and all findings.
+    pub fn finish(self) -> (Option<Vec<(Path, ItemValue)>>, Vec<Finding>) {
         let mut findings = self.resolver.finish();
         // That an item has no value follows from what is wrong with what it is worked out from.
         let known = !findings.is_empty();
@@ -139,10 +139,10 @@ impl<'s> Reader<'s> {
         if findings.iter().any(Finding::is_error) {
             return (None, findings);
         }
-        let read: Vec<(&Wanted, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
-        let json = together(self.read, self.textures);
+        let read: Vec<(&ItemSource, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
+        let json = combine(self.read, self.textures);
         match Description::deserialize(&json) {
-            Ok(scene) => (Some(taken(scene, &read)), findings),
+            Ok(scene) => (Some(split(scene, &read)), findings),
             // The schema allows what the types refuse: only a slip of ours can bring us here.
             Err(error) => {
                 findings.push(Finding::error(error.to_string()));
@@ -152,7 +152,7 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// Where messages say that an item stands: a texture that is written in place stands there.
+/// Path of an item for messages; an inline texture is reported where it is written.
 fn written_at(path: &Path) -> Path {
     match path.steps() {
         [Step::Key(section), Step::Key(name)] if section == "textures" && name.starts_with('/') => {
@@ -162,8 +162,9 @@ fn written_at(path: &Path) -> Path {
     }
 }
 
-/// One scene of all that was read. Items of maps are numbered in order; so are lists of objects, as groups.
-fn together(read: Vec<(&Wanted, Kind, Value)>, textures: Vec<(String, Value)>) -> Value {
+/// Combines all items of a batch into the JSON of one scene. Items of maps are keyed by their number in the
+/// batch; a list of objects becomes a group.
+fn combine(read: Vec<(&ItemSource, Kind, Value)>, textures: Vec<(String, Value)>) -> Value {
     let mut sections: [Map<String, Value>; 4] = Default::default();
     let (mut lights, mut objects, mut scene) = (Vec::new(), Vec::new(), Map::new());
     let [cameras, named, materials, groups] = &mut sections;
@@ -193,8 +194,8 @@ fn together(read: Vec<(&Wanted, Kind, Value)>, textures: Vec<(String, Value)>) -
     Value::Object(scene)
 }
 
-/// The items of a scene that was put together, each in its place.
-fn taken(scene: Description, read: &[(&Wanted, Kind)]) -> Vec<(Path, Part)> {
+/// Splits the deserialized scene of a batch into items with their paths.
+fn split(scene: Description, read: &[(&ItemSource, Kind)]) -> Vec<(Path, ItemValue)> {
     let Description { render, tone, mut background, background_light_group, cameras, textures, .. } = scene;
     let (mut cameras, mut textures) = (cameras.into_inner(), textures.into_inner());
     let (mut materials, mut groups) = (scene.materials.into_inner(), scene.groups.into_inner());
@@ -203,32 +204,32 @@ fn taken(scene: Description, read: &[(&Wanted, Kind)]) -> Vec<(Path, Part)> {
     for (i, (wanted, kind)) in read.iter().enumerate() {
         let key = i.to_string();
         let part = match kind {
-            Kind::Render => Some(Part::Render(wanted.item(render.clone()))),
-            Kind::Tone => Some(Part::Tone(wanted.item(tone.clone()))),
-            Kind::Background => background.take().map(|item| Part::Background(wanted.item(item))),
-            Kind::Camera => cameras.swap_remove(&key).map(|item| Part::Camera(wanted.item(item))),
-            Kind::Texture => textures.shift_remove(&key).map(|item| Part::Texture(wanted.item(item))),
-            Kind::Material => materials.swap_remove(&key).map(|item| Part::Material(wanted.item(item))),
-            Kind::Light => lights.next().map(|item| Part::Light(wanted.item(item))),
+            Kind::Render => Some(ItemValue::Render(wanted.item(render.clone()))),
+            Kind::Tone => Some(ItemValue::Tone(wanted.item(tone.clone()))),
+            Kind::Background => background.take().map(|item| ItemValue::Background(wanted.item(item))),
+            Kind::Camera => cameras.swap_remove(&key).map(|item| ItemValue::Camera(wanted.item(item))),
+            Kind::Texture => textures.shift_remove(&key).map(|item| ItemValue::Texture(wanted.item(item))),
+            Kind::Material => materials.swap_remove(&key).map(|item| ItemValue::Material(wanted.item(item))),
+            Kind::Light => lights.next().map(|item| ItemValue::Light(wanted.item(item))),
             Kind::Lights(count) => {
-                let items = lights.by_ref().take(*count).map(|light| light.learned(wanted.place, None));
-                Some(Part::Lights(items.collect()))
+                let items = lights.by_ref().take(*count).map(|light| light.with_source(wanted.place, None));
+                Some(ItemValue::Lights(items.collect()))
             }
-            Kind::Object => objects.next().map(|item| Part::Object(wanted.object(item))),
-            Kind::Objects => groups.swap_remove(&key).map(|list| Part::Objects(wanted.list(list))),
-            Kind::Label => background_light_group.clone().map(Part::Label),
+            Kind::Object => objects.next().map(|item| ItemValue::Object(wanted.object(item))),
+            Kind::Objects => groups.swap_remove(&key).map(|list| ItemValue::Objects(wanted.list(list))),
+            Kind::Label => background_light_group.clone().map(ItemValue::Label),
         };
         parts.extend(part.map(|part| (wanted.path.clone(), part)));
     }
     // What is left are textures that value forms have written in place.
     for (name, texture) in textures {
-        parts.push((Path::root().key("textures").key(name), Part::FormTexture(texture.learned(None, None))));
+        parts.push((Path::root().key("textures").key(name), ItemValue::FormTexture(texture.with_source(None, None))));
     }
     parts
 }
 
-impl Part {
-    /// The name of a texture that was written in place.
+impl ItemValue {
+    /// Name of the inline texture, if the value is one.
     pub fn name_in_place(&self, path: &Path) -> Option<String> {
         match (self, path.steps()) {
             (Self::FormTexture(_), [_, Step::Key(name)]) => Some(name.clone()),
@@ -236,7 +237,7 @@ impl Part {
         }
     }
 
-    /// The value as JSON.
+    /// JSON of the value.
     pub fn json(&self) -> Value {
         let json = match self {
             Self::Render(item) => serde_json::to_value(item),
@@ -255,9 +256,9 @@ impl Part {
     }
 }
 
-impl Wanted {
+impl ItemSource {
     fn item<T: Clone>(&self, item: Item<T>) -> Item<T> {
-        item.learned(self.place, self.moves.then(|| Arc::clone(&self.template)))
+        item.with_source(self.place, self.moves.then(|| Arc::clone(&self.template)))
     }
 
     fn object(&self, item: Item<Object>) -> Item<Object> {
@@ -265,12 +266,12 @@ impl Wanted {
     }
 
     fn list(&self, list: Objects) -> Objects {
-        let item = |item: Item<Object>| within(item, &self.template.node, self.place).learned(self.place, None);
+        let item = |item: Item<Object>| within(item, &self.template.node, self.place).with_source(self.place, None);
         list.into_inner().into_iter().map(item).collect()
     }
 }
 
-/// An object whose inner objects were read with it, and do not move by themselves.
+/// Marks the child objects of an object as read; they have no templates of their own.
 fn within(mut object: Item<Object>, node: &Node, place: Option<Place>) -> Item<Object> {
     if object.objects.is_none() {
         return object;
@@ -280,64 +281,65 @@ fn within(mut object: Item<Object>, node: &Node, place: Option<Place>) -> Item<O
         let node = nodes.get(i);
         let place = node.and_then(|node| node.place).or(place);
         let item = if let Some(node) = node { within(item, node, place) } else { item };
-        item.learned(place, None)
+        item.with_source(place, None)
     };
-    let objects = object.quietly().objects.take();
-    object.quietly().objects = objects.map(|list| list.into_inner().into_iter().enumerate().map(inner).collect());
+    let objects = object.value_mut_unmarked().objects.take();
+    object.value_mut_unmarked().objects =
+        objects.map(|list| list.into_inner().into_iter().enumerate().map(inner).collect());
     object
 }
 
 impl Description {
-    /// Puts what was read where it belongs.
-    pub(crate) fn put(&mut self, path: &Path, part: Part) {
+    /// Stores a value at its path.
+    pub(crate) fn put(&mut self, path: &Path, part: ItemValue) {
         let steps = path.steps();
         match part {
-            Part::Render(item) => self.render = item,
-            Part::Tone(item) => self.tone = item,
-            Part::Background(item) => self.background = Some(item),
-            Part::Camera(item) => match steps {
+            ItemValue::Render(item) => self.render = item,
+            ItemValue::Tone(item) => self.tone = item,
+            ItemValue::Background(item) => self.background = Some(item),
+            ItemValue::Camera(item) => match steps {
                 [_, Step::Key(name)] => drop(self.cameras.insert(name.clone(), item)),
                 _ => self.camera = Some(item),
             },
-            Part::Texture(item) => insert(&mut self.textures, steps, item),
-            Part::FormTexture(item) => {
+            ItemValue::Texture(item) => insert(&mut self.textures, steps, item),
+            ItemValue::FormTexture(item) => {
                 if let [_, Step::Key(name)] = steps {
                     self.form_textures.insert(name.clone());
                 }
                 insert(&mut self.textures, steps, item);
             }
-            Part::Material(item) => insert(&mut self.materials, steps, item),
-            Part::Light(item) => {
+            ItemValue::Material(item) => insert(&mut self.materials, steps, item),
+            ItemValue::Light(item) => {
                 if let [_, Step::Index(i)] = steps {
                     set(&mut self.lights, *i, item);
                 }
             }
-            Part::Object(item) => {
+            ItemValue::Object(item) => {
                 if let Some((objects, i)) = self.list_mut(path) {
                     set(objects, i, item);
                 }
             }
-            Part::Objects(_) | Part::Lights(_) | Part::Label(_) => self.put_given(path, part),
+            ItemValue::Objects(_) | ItemValue::Lights(_) | ItemValue::Label(_) => self.put_given(path, part),
         }
     }
 
-    /// Puts what the form of a list gave.
-    fn put_given(&mut self, path: &Path, part: Part) {
+    /// Stores the value of a list form.
+    fn put_given(&mut self, path: &Path, part: ItemValue) {
         let given = match part {
-            Part::Objects(objects) => {
+            ItemValue::Objects(objects) => {
                 match path.steps() {
                     [_, Step::Key(name)] => drop(self.groups.insert(name.clone(), objects.clone())),
                     _ => self.objects = objects.clone(),
                 }
-                Given::Objects(objects)
+                FormValue::Objects(objects)
             }
-            Part::Lights(lights) => {
+            ItemValue::Lights(lights) => {
                 self.lights = lights.clone();
-                Given::Lights(lights)
+                FormValue::Lights(lights)
             }
-            Part::Label(label) => {
+            ItemValue::Label(label) => {
                 self.background_light_group = Some(label.clone());
-                Given::Label(label)
+                FormValue::Label(label)
             }
             _ => return,
         };
@@ -347,7 +349,7 @@ impl Description {
     }
 }
 
-/// Puts an item in place of that at a position, or behind the last.
+/// Replaces the item at a position, or appends it.
 fn set<T>(list: &mut Shared<Vec<Item<T>>>, at: usize, item: Item<T>) {
     match list.get_mut(at) {
         Some(place) => *place = item,
