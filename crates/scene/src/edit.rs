@@ -2,8 +2,7 @@
 
 use crate::description::{Description, Named, Written, described};
 use crate::document::{Member, Members, Node, Value as Json, put};
-use crate::item::Template;
-use crate::motion::{self, ItemReader, ItemSource};
+use crate::motion::{self, ItemSource};
 use crate::path::{Path, Step, Trail};
 use crate::report::Finding;
 use crate::validate::{self, NameScope};
@@ -53,8 +52,9 @@ impl Scene {
         let removes = self.description.remove(&path, &section, written);
         let Some(written) = written else { return self.check_names(removes) };
         let wanted = wanted_in(written, &path, &section);
-        self.read_items(&wanted)?;
-        self.check_names(removes)
+        let (head, sources) = (motion::head(&self.description), self.sources().clone());
+        let (stored, findings) = motion::replace_items(&mut self.description, &head, &sources, self.frame, &wanted);
+        if stored { self.check_names(removes) } else { Err(findings) }
     }
 
     /// Sets a section that is neither an item nor a list of items.
@@ -78,9 +78,9 @@ impl Scene {
     fn resolve_again(&mut self) -> Result<(), Vec<Finding>> {
         self.check_paths()?;
         let wanted = self.description.templates(|_| true);
-        let parts = self.read_parts(&wanted)?;
-        parts.into_iter().for_each(|(path, part)| self.description.put(&path, part));
         let head = motion::head(&self.description);
+        let (parts, findings) = motion::read_items(&self.description, &head, self.sources(), self.frame, &wanted);
+        parts.ok_or(findings)?.into_iter().for_each(|(path, part)| self.description.put(&path, part));
         self.description.update_time_dependence(&head);
         Ok(())
     }
@@ -94,24 +94,6 @@ impl Scene {
             validate::item(paths, &Path::from(&at), &at, NameScope::Scene(&self.description)).findings
         }));
         if findings.iter().any(Finding::is_error) { Err(findings) } else { Ok(()) }
-    }
-
-    /// Reads edited items and stores them.
-    fn read_items(&mut self, wanted: &[ItemSource]) -> Result<(), Vec<Finding>> {
-        let parts = self.read_parts(wanted)?;
-        let in_place: Vec<String> = parts.iter().filter_map(|(path, part)| part.name_in_place(path)).collect();
-        parts.into_iter().for_each(|(path, part)| self.description.put(&path, part));
-        let head = motion::head(&self.description);
-        motion::attach_items(&mut self.description, &head, wanted, &in_place);
-        Ok(())
-    }
-
-    fn read_parts(&self, wanted: &[ItemSource]) -> Result<Vec<(Path, motion::ItemValue)>, Vec<Finding>> {
-        let head = motion::head(&self.description);
-        let mut reader = ItemReader::new(&head, self.sources(), self.frame, NameScope::Scene(&self.description));
-        wanted.iter().for_each(|wanted| reader.add(wanted));
-        let (parts, findings) = reader.finish();
-        parts.ok_or(findings)
     }
 
     /// Checks that no item refers to a removed name.
@@ -191,10 +173,7 @@ fn list(mut nodes: impl Iterator<Item = Node>, count: usize, at: Option<usize>) 
 fn wanted_in(section: &Node, path: &Path, key: &str) -> Vec<ItemSource> {
     let root = Path::root().key(key);
     let mut wanted = Vec::new();
-    let mut want = |path: Path, node: &Node| {
-        let template = Arc::new(Template { node: node.clone(), depends_on_time: true });
-        wanted.push(ItemSource { path, template, moves: false, place: node.place });
-    };
+    let mut want = |path: Path, node: &Node| wanted.push(ItemSource::unread(path, node.clone()));
     let is_list = |node: &Node| matches!(node.value, Json::Array(_));
     let mut each = |root: &Path, list: &Node, step: Option<&Step>| match step {
         _ if !is_list(list) => want(root.clone(), list),

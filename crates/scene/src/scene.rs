@@ -7,12 +7,12 @@ use crate::document::{Document, Node, Place, Sources, Unreadable, parse_part};
 use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::import::Content;
 use crate::integrator::IntegratorChoice;
-use crate::motion::{self, ItemReader, Tracks, read_list};
+use crate::motion::{self, Tracks, read_list};
 use crate::path::Path as ScenePath;
 use crate::relocate::relocate;
 use crate::report::{Finding, Problems};
 use crate::store::{Bundle, Store};
-use crate::validate::{DeclaredNames, NameScope};
+use crate::validate::DeclaredNames;
 use crate::{animate, around};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -144,9 +144,7 @@ impl Scene {
             return Ok(scene);
         }
         let head = motion::head(&edits_merged);
-        let mut reader = ItemReader::new(&head, self.sources(), frame, NameScope::Scene(&edits_merged));
-        wanted.iter().for_each(|wanted| reader.add(wanted));
-        let (parts, findings) = reader.finish();
+        let (parts, findings) = motion::read_items(&edits_merged, &head, self.sources(), frame, &wanted);
         scene.description = edits_merged.clone().into_owned();
         match parts {
             Some(parts) => parts.into_iter().for_each(|(path, part)| scene.description.put(&path, part)),

@@ -1,7 +1,7 @@
 //! Reads items from JSON in batches: evaluates expressions for a frame, validates against the schema, and
 //! deserializes all items of the batch together.
 
-use super::{FormValue, with_trail};
+use super::{FormValue, attach_items, with_trail};
 use crate::animate::Resolver;
 use crate::description::{Backdrop, Description, Object, Objects, Render};
 use crate::document::{Node, Place, Sources};
@@ -29,6 +29,14 @@ pub(crate) struct ItemSource {
     /// Whether the item keeps its template.
     pub moves: bool,
     pub place: Option<Place>,
+}
+
+impl ItemSource {
+    /// JSON of an item at a path that has not been read yet.
+    pub fn unread(path: Path, node: Node) -> Self {
+        let place = node.place;
+        Self { path, template: Arc::new(Template { node, depends_on_time: true }), moves: false, place }
+    }
 }
 
 /// Value of an item or of a list of items.
@@ -86,11 +94,46 @@ impl Kind {
     }
 }
 
-/// Reads items of a scene for one frame.
-pub(crate) struct ItemReader<'s> {
+/// Value of each item with its path, or `None` after an error.
+pub(crate) type ItemValues = Option<Vec<(Path, ItemValue)>>;
+
+/// Reads items of `scene` for a frame. `head` holds the scene's `animation`, `variables` and `paths`. Returns the
+/// values and all findings.
+pub(crate) fn read_items(
+    scene: &Description,
+    head: &Node,
+    sources: &Sources,
+    frame: f64,
+    wanted: &[ItemSource],
+) -> (ItemValues, Vec<Finding>) {
+    let mut reader = ItemReader::new(head, sources, frame, NameScope::Scene(scene));
+    wanted.iter().for_each(|wanted| reader.add(wanted));
+    reader.finish()
+}
+
+/// Reads items that are new or were edited, stores them in the scene, and attaches their templates. Returns whether the
+/// items were stored, and all findings.
+pub(crate) fn replace_items(
+    scene: &mut Description,
+    head: &Node,
+    sources: &Sources,
+    frame: f64,
+    wanted: &[ItemSource],
+) -> (bool, Vec<Finding>) {
+    let (parts, findings) = read_items(scene, head, sources, frame, wanted);
+    let Some(parts) = parts else { return (false, findings) };
+    let in_place: Vec<String> = parts.iter().filter_map(|(path, part)| part.name_in_place(path)).collect();
+    parts.into_iter().for_each(|(path, part)| scene.put(&path, part));
+    attach_items(scene, head, wanted, &in_place);
+    (true, findings)
+}
+
+struct ItemReader<'s> {
     resolver: Resolver<'s>,
     known: NameScope<'s>,
     findings: Vec<Finding>,
+    /// Findings for items without a value, which other findings explain if there are any.
+    unresolved: Vec<Finding>,
     /// Validated items so far: source, kind, JSON.
     read: Vec<(&'s ItemSource, Kind, Value)>,
     /// Inline textures by name.
@@ -98,14 +141,13 @@ pub(crate) struct ItemReader<'s> {
 }
 
 impl<'s> ItemReader<'s> {
-    /// Creates a reader for a frame; `head` holds the scene's `animation`, `variables` and `paths`.
-    pub fn new(head: &'s Node, sources: &'s Sources, frame: f64, known: NameScope<'s>) -> Self {
+    fn new(head: &'s Node, sources: &'s Sources, frame: f64, known: NameScope<'s>) -> Self {
         let resolver = Resolver::new(head, sources, frame);
-        Self { resolver, known, findings: Vec::new(), read: Vec::new(), textures: Vec::new() }
+        Self { resolver, known, findings: Vec::new(), unresolved: Vec::new(), read: Vec::new(), textures: Vec::new() }
     }
 
     /// Evaluates and validates an item.
-    pub fn add(&mut self, wanted: &'s ItemSource) {
+    fn add(&mut self, wanted: &'s ItemSource) {
         let Some(kind) = Kind::of(&wanted.path) else { return };
         let stands = written_at(&wanted.path);
         let before = self.findings.len();
@@ -121,21 +163,21 @@ impl<'s> ItemReader<'s> {
                 self.read.push((wanted, Kind::Lights(list.len()), Value::Array(list)));
             }
             Some(json) => self.read.push((wanted, kind, json)),
-            // The resolver has said what is wrong, or says nothing where something else is wrong that it needs.
             None if self.findings.len() == before => {
                 let message = "this has no value at every time that is asked for";
-                self.findings.push(Finding::error(message).at(&stands).on(wanted.place));
+                self.unresolved.push(Finding::error(message).at(&stands).on(wanted.place));
             }
             None => {}
         }
     }
 
     /// Deserializes the batch. Returns the items with their paths, or `None` after an error, and all findings.
-    pub fn finish(self) -> (Option<Vec<(Path, ItemValue)>>, Vec<Finding>) {
+    fn finish(self) -> (ItemValues, Vec<Finding>) {
         let mut findings = self.resolver.finish();
-        // That an item has no value follows from what is wrong with what it is worked out from.
-        let known = !findings.is_empty();
-        findings.extend(self.findings.into_iter().filter(|finding| !(known && finding.says("has no value at every"))));
+        if findings.is_empty() {
+            findings.extend(self.unresolved);
+        }
+        findings.extend(self.findings);
         if findings.iter().any(Finding::is_error) {
             return (None, findings);
         }

@@ -1,13 +1,10 @@
 //! Reads long lists of a document in chunks, so that only one chunk exists as a JSON tree at a time.
 
-use super::{ItemReader, ItemSource, attach_items, head};
+use super::{ItemSource, head, replace_items};
 use crate::description::Description;
 use crate::document::{FileId, LongList, Node, Sources, finding};
-use crate::item::Template;
 use crate::path::Path;
 use crate::report::Finding;
-use crate::validate::NameScope;
-use std::sync::Arc;
 
 /// Maximum number of errors reported per list.
 const MAX_FINDINGS: usize = 200;
@@ -49,19 +46,7 @@ fn read_chunk(
     findings: &mut Vec<Finding>,
 ) {
     let section = Path::root().key(key);
-    let wanted = |(i, node): (usize, Node)| {
-        let place = node.place;
-        let template = Arc::new(Template { node, depends_on_time: true });
-        ItemSource { path: section.index(first + i), template, moves: false, place }
-    };
-    let wanted: Vec<ItemSource> = nodes.into_iter().enumerate().map(wanted).collect();
-    let mut reader = ItemReader::new(head, sources, 0.0, NameScope::Scene(scene));
-    wanted.iter().for_each(|wanted| reader.add(wanted));
-    let (parts, more) = reader.finish();
+    let wanted = nodes.into_iter().enumerate().map(|(i, node)| ItemSource::unread(section.index(first + i), node));
+    let (_, more) = replace_items(scene, head, sources, 0.0, &wanted.collect::<Vec<_>>());
     findings.extend(more);
-    // Items after a mistake stand at other numbers, and are not kept.
-    let Some(parts) = parts else { return };
-    let in_place: Vec<String> = parts.iter().filter_map(|(path, part)| part.name_in_place(path)).collect();
-    parts.into_iter().for_each(|(path, part)| scene.put(&path, part));
-    attach_items(scene, head, &wanted, &in_place);
 }

@@ -15,8 +15,9 @@ mod settle;
 mod tracks;
 mod write;
 
-pub(crate) use attach::{attach, attach_items};
-pub(crate) use item_reader::{ItemReader, ItemSource, ItemValue};
+pub(crate) use attach::attach;
+use attach::attach_items;
+pub(crate) use item_reader::{ItemSource, ItemValue, read_items, replace_items};
 pub(crate) use lists::read_list;
 pub(crate) use settle::edits_merged;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};

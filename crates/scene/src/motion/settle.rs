@@ -1,13 +1,12 @@
 //! Merges edits by programs into the templates of animated items. An edited value becomes constant; values that the
 //! program left alone stay animated.
 
-use super::{FormValue, ItemReader, ItemSource, write};
+use super::{FormValue, ItemSource, read_items, write};
 use crate::animate::{TimeDependence, has_expressions, is_form};
 use crate::description::Description;
 use crate::document::{Node, Sources, Value};
 use crate::item::Template;
 use crate::path::{Path, Step};
-use crate::validate::NameScope;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -49,9 +48,7 @@ fn before(
     template: &Arc<Template>,
 ) -> Option<serde_json::Value> {
     let wanted = ItemSource { path: path.clone(), template: Arc::clone(template), moves: true, place: None };
-    let mut reader = ItemReader::new(head, sources, frame, NameScope::Scene(scene));
-    reader.add(&wanted);
-    let (_, part) = reader.finish().0?.into_iter().next()?;
+    let (_, part) = read_items(scene, head, sources, frame, &[wanted]).0?.into_iter().next()?;
     Some(part.json())
 }
 

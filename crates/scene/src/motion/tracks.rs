@@ -1,6 +1,6 @@
 //! Animated items while the shutter is open, sampled at even times from opening to closing.
 
-use super::{ItemReader, ItemSource, ItemValue, write};
+use super::{ItemSource, ItemValue, read_items, write};
 use crate::Object;
 use crate::animate::TimeDependence;
 use crate::description::Description;
@@ -8,7 +8,6 @@ use crate::document::{Node, Sources};
 use crate::item::{Item, Template};
 use crate::path::{Path, Step};
 use crate::report::Finding;
-use crate::validate::NameScope;
 use juggler_tracer::camera::AnyCamera;
 use juggler_tracer::light::AnyLight;
 use serde::Serialize;
@@ -59,20 +58,13 @@ impl Tracks {
         for moment in 0..MOMENTS {
             let share = moment as f64 / (MOMENTS - 1) as f64;
             let time = frame + open + (close - open) * share;
-            let mut reader = ItemReader::new(&head, sources, time, NameScope::Scene(scene));
-            wanted.iter().for_each(|wanted| reader.add(wanted));
-            match reader.finish() {
+            match read_items(scene, &head, sources, time, &wanted) {
                 (Some(parts), _) => moments.push(parts),
                 // What is wrong at one time is likely to be so at the next: once is enough.
                 (None, findings) => return (Self::default(), findings),
             }
         }
         (Self::through(scene, &wanted, moments), Vec::new())
-    }
-
-    /// Whether no item has a track.
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
     }
 
     /// Collects the samples of each item.
@@ -206,6 +198,10 @@ impl Description {
     /// Updates the time dependence of all templates; `head` holds the scene's variables and paths.
     pub(crate) fn update_time_dependence(&mut self, head: &Node) {
         let mut changing = TimeDependence::of(head);
+        for form in self.list_forms.iter_mut() {
+            let depends_on_time = changing.holds(&form.template.node);
+            form.template = Arc::new(Template { node: form.template.node.clone(), depends_on_time });
+        }
         for ItemSource { path, template, .. } in self.templates(|_| true) {
             let depends_on_time = changing.holds(&template.node);
             if depends_on_time != template.depends_on_time {

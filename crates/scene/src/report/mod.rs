@@ -84,6 +84,7 @@ impl Finding {
     }
 
     /// Whether the message holds these words.
+    #[cfg(test)]
     pub(crate) fn says(&self, words: &str) -> bool {
         self.message.contains(words)
     }
