@@ -4,12 +4,13 @@
 //!
 //! 1. [`attach`] attaches templates and source locations after a document was read; [`lists`] reads long lists.
 //! 2. [`settle`] merges edits by programs into templates.
-//! 3. [`item_reader`] evaluates templates at a frame.
+//! 3. [`item_reader`] evaluates templates at a frame; [`item_value`] is what it reads.
 //! 4. [`tracks`] samples animated items at even times while the shutter is open.
 //! 5. [`write`](mod@write) writes a scene with its animation as JSON.
 
 mod attach;
 mod item_reader;
+mod item_value;
 mod lists;
 mod settle;
 mod tracks;
@@ -17,7 +18,8 @@ mod write;
 
 pub(crate) use attach::attach;
 use attach::attach_items;
-pub(crate) use item_reader::{ItemSource, ItemValue, read_items, replace_items};
+pub(crate) use item_reader::{ItemSource, read_items, replace_items};
+pub(crate) use item_value::ItemValue;
 pub(crate) use lists::read_list;
 pub(crate) use settle::edits_merged;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};
