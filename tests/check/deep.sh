@@ -50,14 +50,14 @@ deep_noise() { JUGGLER_NOISE=all cargo test --release --locked -p juggler-golden
 # A million rays a case against brute force, and 100,000 that leave each shape.
 deep_rays() {
   JUGGLER_RAYS=1_000_000 cargo test --release --locked -p juggler-bvh
-  JUGGLER_HITS=1000 cargo test --release --locked -p juggler-tracer --lib precision
+  JUGGLER_HITS=1000 cargo test --release --locked -p juggler-world --lib precision
 }
 
 # White furnaces over whole grids of every material's parameters, room furnaces of every shape that emits, and heaps of 1 to 40
 # balls with the machinery for caustics and without.
 deep_furnaces() {
-  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --lib contract::white
-  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-tracer --test integration -- white_worlds:: white_kinds:: rooms:: balls::
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-bsdf --lib contract::white
+  JUGGLER_FURNACES=all cargo test --release --locked -p juggler-render --test integration -- white_worlds:: white_kinds:: rooms:: balls::
 }
 
 # What `--max-memory` promises, by an optimized program: the check itself asks an unoptimized one.

@@ -1,4 +1,4 @@
-"""Derive the named metals of crates/tracer/src/bsdf/metals.rs from measured tables of n and k.
+"""Derive the named metals of crates/bsdf/src/metals.rs from measured tables of n and k.
 
     python3 -m venv metals && metals/bin/pip install -r tests/metals/requirements.txt
     metals/bin/python tests/metals/derive.py FOLDER             # a row for each metal and channel

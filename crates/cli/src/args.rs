@@ -6,8 +6,8 @@ use crate::tips;
 use crate::value::{self, FrameRange, Shard};
 use clap::{Arg, Args as Arguments, ColorChoice, Command, CommandFactory, FromArgMatches, Parser};
 use juggler::Denoiser;
+use juggler::camera::film::Rect;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
-use juggler::tracer::film::Rect;
 use std::ffi::OsString;
 use std::time::Duration;
 

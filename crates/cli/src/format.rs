@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
+use juggler::camera::film::Summary;
 use juggler::film::counts::Spread;
-use juggler::tracer::film::Summary;
 use std::time::Duration;
 
 /// `12ms`, `1.21s`, `12.3s`, `9m56s`, `2h03m04s`: three digits up to a minute, from then on whole

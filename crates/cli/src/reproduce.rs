@@ -2,8 +2,8 @@
 //! that equal pictures are equal files.
 
 use crate::plan::{Moments, Plan, Shot};
+use juggler::camera::film::Rect;
 use juggler::imaging::{Look, Options, Primaries, SampleDepth, WhiteBalance};
-use juggler::tracer::film::Rect;
 use juggler::{Aov, Denoiser, Limit, Settings};
 use std::fmt::Display;
 

@@ -1,9 +1,9 @@
 //! `--stats`: one JSON object about a render, with the keys that other people's scripts read.
 
+use juggler::camera::film::Summary;
 use juggler::film::counts::Spread;
 use juggler::imaging::Viewpoint;
-use juggler::tracer::film::Summary;
-use juggler::tracer::render::Rays;
+use juggler::render::Rays;
 use juggler::{Limit, Outcome, Picture};
 use serde::Serialize;
 use serde_json::Value;

@@ -1,10 +1,10 @@
 //! Values of flags: sizes, ranges, amounts of memory. What is wrong is said with an example of what is right.
 
 use juggler::Denoiser;
+use juggler::camera::film::{BLOCK, Rect};
 use juggler::imaging::animation::PACES;
 use juggler::imaging::{Look, Primaries, WhiteBalance};
 use juggler::scene::compile::{MAX_PIXELS, MAX_SHUTTER};
-use juggler::tracer::film::{BLOCK, Rect};
 use std::ops::Range;
 use std::time::Duration;
 

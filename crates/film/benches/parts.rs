@@ -2,8 +2,8 @@
 //! `cargo bench -p juggler-film`. The films are those of built-in scenes.
 #![allow(clippy::print_stdout, reason = "that is its purpose")]
 
+use juggler::camera::film::{BLOCK, Layout, Rect, Run, Sum, Tile};
 use juggler::prelude::*;
-use juggler::tracer::film::{BLOCK, Layout, Rect, Run, Sum, Tile};
 use juggler_film::share::Work;
 use juggler_film::{Chunk, Description, Layered, Merge, Part, PartError, Share, Stop, Wanted, write};
 use juggler_raybench::clock::{Of, Stopwatch};

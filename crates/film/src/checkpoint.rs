@@ -2,7 +2,7 @@
 //! until the end.
 
 use crate::part::{Description, Part, PartError, Stop, write};
-use juggler_tracer::film::{Film, Tile, TileError};
+use juggler_camera::film::{Film, Tile, TileError};
 use std::ffi::OsString;
 use std::fs;
 use std::ops::Range;
@@ -171,7 +171,7 @@ fn check_tile(tile: &Tile, number: u64, film: &Film) -> Result<(), String> {
 mod tests {
     use super::*;
     use crate::testing::{description, place, tile, tiles};
-    use juggler_tracer::film::{Layout, Rect};
+    use juggler_camera::film::{Layout, Rect};
 
     const REGION: Rect = Rect { x: 0, y: 0, width: 40, height: 20 };
 

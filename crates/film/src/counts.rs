@@ -2,7 +2,7 @@
 //! samples and 1523 with 48. And what that is per pixel of the whole picture.
 
 use crate::part::{Part, PartError};
-use juggler_tracer::film::{Film, Layout};
+use juggler_camera::film::{Film, Layout};
 use serde::Serialize;
 use std::fmt;
 
@@ -91,7 +91,7 @@ pub fn of_part(part: &Part) -> Result<Vec<u32>, PartError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_tracer::film::Rect;
+    use juggler_camera::film::Rect;
 
     #[test]
     fn counts_are_read_as_they_were_written() {

@@ -8,8 +8,8 @@
 //! is dealt last, to those who have least.
 
 use crate::part::{Description, Stop};
+use juggler_camera::film::{BLOCK, Layout, Rect, TILE};
 use juggler_math::hash;
-use juggler_tracer::film::{BLOCK, Layout, Rect, TILE};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "only tests use it")]
 
 use crate::{Description, Layered, Share, Stop};
+use juggler_camera::film::{Accumulator, Layout, Rect, Run, Samples, Sum, Tile, runs};
 use juggler_math::{Rgb, hash};
-use juggler_tracer::film::{Accumulator, Layout, Rect, Run, Samples, Sum, Tile, runs};
 use std::ops::Range;
 use std::path::PathBuf;
 

@@ -2,11 +2,11 @@
 
 use juggler::film::{Merge, Part, Wanted};
 use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
+use juggler::light::Profile;
 use juggler::memory::Memory;
 use juggler::scene::Scene;
 use juggler::scene::expression::{Names, Quantity, evaluate};
 use juggler::scene::import::{self, parse};
-use juggler::tracer::light::Profile;
 use juggler::{LayerSet, Settings};
 use juggler_math::Rgb;
 use std::io::Cursor;

@@ -1,13 +1,13 @@
 //! Taking the noise out of a film's picture: its halves and what guides the filter, gathered tile by tile.
 
 use crate::{Error, LayerSet, check_name};
+use juggler_camera::film::{Rect, Tile};
+use juggler_camera::layer::{Guide, Layer, is_half};
 pub use juggler_denoise::Denoised;
 use juggler_denoise::{Features, Noisy, denoise_unless};
 use juggler_math::{Rgb, Vec3};
 use juggler_oidn::Library;
-use juggler_tracer::film::{Rect, Tile};
-use juggler_tracer::layer::{Guide, Layer, is_half};
-use juggler_tracer::render::Control;
+use juggler_render::Control;
 use std::path::Path;
 
 /// What takes the noise out.

@@ -1,8 +1,8 @@
 //! Why there is no picture.
 
 use juggler_imaging::ImageError;
+use juggler_render::Stopped;
 use juggler_scene::SceneError;
-use juggler_tracer::render::Stopped;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]

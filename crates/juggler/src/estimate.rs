@@ -1,8 +1,8 @@
 //! Pictures as estimates of what they would be without noise: means and their variances, from films.
 
+use juggler_camera::film::{BLOCK, Film, Rect, Statistics, Tile};
 use juggler_imaging::significance::Estimate;
 use juggler_math::Rgb;
-use juggler_tracer::film::{BLOCK, Film, Rect, Statistics, Tile};
 
 /// What the tiles of a picture know of it; pixels that no tile holds are not known.
 pub fn of_tiles(region: Rect, tiles: impl IntoIterator<Item = Tile>) -> Estimate {

@@ -1,10 +1,10 @@
 //! The scene at the frames beside the one that is rendered, for layers that tell where things go.
 
 use crate::{Aov, Error, LayerSet, Settings};
+use juggler_camera::Shot;
 use juggler_math::UVec2;
 use juggler_scene::{Compiled, Scene};
-use juggler_tracer::camera::Shot;
-use juggler_tracer::frames::{Frame, Frames};
+use juggler_world::frames::{Frame, Frames};
 use std::sync::Arc;
 
 /// The frames beside one, with what tells them from others.

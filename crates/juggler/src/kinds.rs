@@ -32,7 +32,7 @@ pub fn check_name<'n>(what: &str, name: &str, known: impl Iterator<Item = &'n st
 mod tests {
     use super::*;
     use juggler_imaging::AnyCurve;
-    use juggler_tracer::integrator::AnyIntegrator;
+    use juggler_integrator::AnyIntegrator;
 
     #[test]
     fn every_name_is_a_kind() {

@@ -5,12 +5,12 @@ mod values;
 mod words;
 
 use crate::{Denoiser, Error, check_name};
+use juggler_camera::layer::{Beside, Guide, Layer, Layers, LightGroup};
 use juggler_film::part::{Layered, MAX_PLANES};
 use juggler_imaging::Header;
 use juggler_imaging::layered::{LayerHeader, LayeredHeader};
+use juggler_material::MaterialId;
 use juggler_scene::Names;
-use juggler_tracer::layer::{Beside, Guide, Layer, Layers, LightGroup};
-use juggler_tracer::material::MaterialId;
 use std::collections::HashSet;
 
 /// The largest factor on the light of a group.

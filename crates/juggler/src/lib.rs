@@ -21,8 +21,9 @@
 //! - [`Picture`] does both step by step: with progress, cancelling, numbers afterwards; and it keeps
 //!   the world with its acceleration structures for further pictures.
 //!
-//! Rendering uses the current rayon thread pool. The crates behind: [`math`], [`tracer`], [`scene`],
-//! [`imaging`], [`film`]. The folder `examples/` is a course in four steps.
+//! Rendering uses the current rayon thread pool. The crates behind it, in the order of a ray's
+//! journey: [`math`], [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`],
+//! [`world`], [`integrator`], [`mod@render`]; and [`scene`], [`imaging`], [`film`]. The folder `examples/` is a course in four steps.
 
 pub mod denoise;
 mod error;
@@ -42,11 +43,19 @@ mod viewpoint;
 pub use denoise::Denoiser;
 pub use error::Error;
 pub use image::ImageExt;
+pub use juggler_bsdf as bsdf;
+pub use juggler_camera as camera;
 pub use juggler_film as film;
 pub use juggler_imaging as imaging;
+pub use juggler_integrator as integrator;
+pub use juggler_light as light;
+pub use juggler_material as material;
 pub use juggler_math as math;
+pub use juggler_render as render;
 pub use juggler_scene as scene;
-pub use juggler_tracer as tracer;
+pub use juggler_shape as shape;
+pub use juggler_texture as texture;
+pub use juggler_world as world;
 pub use kinds::{by_name, check_name, names};
 pub use layers::{Aov, LayerSet, MOST_GAIN};
 pub use part::Origin;

@@ -2,12 +2,12 @@
 
 use crate::frames;
 use crate::{Error, LayerSet, Picture, Settings};
+use juggler_camera::film::{Extras, Film, Rect, TILE};
+use juggler_camera::layer::Layers;
+use juggler_render::BAND_PIXELS;
 use juggler_scene::compile::{Needs, estimate_panorama, estimate_picture};
 use juggler_scene::import;
 use juggler_scene::{Names, Scene};
-use juggler_tracer::film::{Extras, Film, Rect, TILE};
-use juggler_tracer::layer::Layers;
-use juggler_tracer::render::{self, BAND_PIXELS};
 use std::ops::Range;
 
 /// Bytes of the program itself; unoptimized code takes more.
@@ -153,7 +153,7 @@ impl Memory {
         let (tiles, shards) = (area.div_ceil(tile), u64::from(shards.max(1)));
         let pixels = (area / shards).saturating_add(2 * tile).min(area.max(tile));
         // Where tiles are few, their samples are dealt out too.
-        let runs = render::most_runs(&samples.unwrap_or(0..self.samples)) + usize::from(tiles < 8 * shards);
+        let runs = juggler_render::most_runs(&samples.unwrap_or(0..self.samples)) + usize::from(tiles < 8 * shards);
         let dealing = tiles.max(16 * shards).saturating_mul(UNIT);
         let row = u64::from(self.region.width) * u64::from(TILE) * 16;
         self.in_bands = false;
@@ -172,7 +172,7 @@ impl Memory {
     }
 
     fn rendering_with(&self, effort: &Effort) -> Vec<Part> {
-        let band = if self.in_bands { render::band_bytes(self.region, effort.band_pixels) } else { 0 };
+        let band = if self.in_bands { juggler_render::band_bytes(self.region, effort.band_pixels) } else { 0 };
         let queues = self.thread.saturating_mul(effort.threads as u64);
         let rest = [part("finished rows", band), part("threads and their queues of rays", queues)];
         self.world.iter().chain(&self.rendering).cloned().chain(rest).collect()

@@ -2,12 +2,12 @@
 
 use crate::denoise::Guides;
 use crate::{Error, Limit, Picture};
+use juggler_camera::film::{Digest, Film, Layout, Summary, Tile};
 use juggler_film::part::{Description, Layered, Share, Stop};
 use juggler_imaging::layered::LayeredWriter;
 use juggler_imaging::{Header, RowWriter};
 use juggler_math::Rgb;
-use juggler_tracer::film::{Digest, Film, Layout, Summary, Tile};
-use juggler_tracer::render::{self, Control, Stopped};
+use juggler_render::{Control, Stopped};
 
 /// What made a picture, besides what the picture knows of itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,12 +33,12 @@ impl Picture {
 
     /// Exposes a film until it is finished, or until `control` says so. What is there already is gone on with.
     pub fn expose(&self, film: &Film, control: &Control) -> Result<(), Stopped> {
-        render::expose(&self.job(), film, self.limit().stop(), control)
+        juggler_render::expose(&self.job(), film, self.limit().stop(), control)
     }
 
     /// Whether every tile of a film has enough samples.
     pub fn is_finished(&self, film: &Film) -> bool {
-        matches!(self.limit(), Limit::Time { .. }) || render::is_finished(film, self.limit().stop())
+        matches!(self.limit(), Limit::Time { .. }) || juggler_render::is_finished(film, self.limit().stop())
     }
 
     /// Hands the finished rows of a film to `rows`, from top to bottom.

@@ -2,16 +2,16 @@
 
 use crate::frames::FramesBeside;
 use crate::{Error, LayerSet, Limit, Settings};
+use juggler_camera::film::{Digest, Filter, Rect, Summary};
+use juggler_camera::{AnyCamera, Perspective, Shot};
 use juggler_film::counts::Spread;
 use juggler_imaging::{Format, Header, Options, RowWriter, Tone};
+use juggler_integrator::{AnyIntegrator, Clamp};
 use juggler_math::{Image, Rgb, UVec2};
+use juggler_render::{BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
 use juggler_scene::description::Render;
 use juggler_scene::{Compiled, Fingerprint, IntegratorChoice, IntegratorReason, Scene, SceneError};
-use juggler_tracer::camera::{AnyCamera, Perspective, Shot};
-use juggler_tracer::film::{Digest, Filter, Rect, Summary};
-use juggler_tracer::integrator::{AnyIntegrator, Clamp};
-use juggler_tracer::render::{self, BAND_PIXELS, Control, Job, Rays, Schedule, Scheduler, Stopped};
-use juggler_tracer::world::{SimdLevel, World};
+use juggler_world::{SimdLevel, World};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -302,7 +302,7 @@ impl Picture {
         let [width, height] = self.size();
         let mut digest = Digest::new(width, height);
         let schedule = Schedule { scheduler, band_pixels: self.band_pixels };
-        render::render(&self.job(), self.region, schedule, control, |band| {
+        juggler_render::render(&self.job(), self.region, schedule, control, |band| {
             digest.update(&band);
             rows(&band)
         })
@@ -380,7 +380,7 @@ mod tests {
 
     #[test]
     fn seen_otherwise_it_is_the_picture_of_a_scene_that_says_so() {
-        let object = juggler_scene::Object::new(juggler_tracer::shape::Sphere::default());
+        let object = juggler_scene::Object::new(juggler_shape::Sphere::default());
         let plain = Scene::new().size(16, 12).add(object);
         let camera = Perspective { vertical_fov_degrees: Some(30.0), ..Perspective::default() };
         let named = plain.clone().camera("left", Perspective::default()).camera("right", camera);

@@ -2,13 +2,13 @@
 
 use crate::kinds::{by_name, check_name};
 use crate::{Aov, Denoiser, Error};
+use juggler_camera::film::{BLOCK, Rect};
 use juggler_imaging::{Primaries, Tone, WhiteBalance};
+use juggler_integrator::AnyIntegrator;
+use juggler_render::Stop;
 use juggler_scene::description::{CameraName, Render};
 use juggler_scene::kind::name_of;
 use juggler_scene::{IntegratorChoice, Scene};
-use juggler_tracer::film::{BLOCK, Rect};
-use juggler_tracer::integrator::AnyIntegrator;
-use juggler_tracer::render::Stop;
 
 /// Most samples of a pixel when the noise stays and nobody says.
 const MOST_FOR_NOISE: u32 = 1 << 16;
@@ -24,7 +24,7 @@ pub enum Limit {
     /// When the relative error of each block of 16 × 16 pixels is at most this: the root mean square over its pixels,
     /// estimated from the picture's own samples (see [`Stop::Noise`]).
     Noise(f32),
-    /// When somebody calls [`Control::finish`](juggler_tracer::render::Control::finish), which is to be after some time.
+    /// When somebody calls [`Control::finish`](juggler_render::Control::finish), which is to be after some time.
     Time {
         /// How long it is to take.
         seconds: f64,
@@ -184,7 +184,7 @@ fn limit_depth(integrator: &mut AnyIntegrator, depth: u32) -> Result<(), Error> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use juggler_tracer::integrator::{Classic, Normals, Path};
+    use juggler_integrator::{Classic, Normals, Path};
 
     fn scene() -> Scene {
         let mut scene = Scene::new().size(20, 10);

@@ -1,8 +1,8 @@
 //! From where a picture is taken, for its file.
 
 use crate::Picture;
+use juggler_camera::{Finder, Matrix};
 use juggler_imaging::{Matrix4, Viewpoint};
-use juggler_tracer::camera::{Finder, Matrix};
 
 /// Of the time that the shutter is open, where the camera is told to stand: half way.
 const MIDDLE: f32 = 0.5;

@@ -5,13 +5,13 @@
 //! scene.json` gives a file to begin with.
 
 use crate::description::{Backdrop, Description, Object, Render};
+use juggler_camera::{AnyCamera, Perspective};
+use juggler_integrator::Path as PathIntegrator;
+use juggler_light::background::Gradient;
+use juggler_light::{AnyLight, Directional};
+use juggler_material::{AnyMaterial, Diffuse, Plastic};
 use juggler_math::{Aabb, DVec3, Rgb, Vec3, fun};
-use juggler_tracer::background::Gradient;
-use juggler_tracer::camera::{AnyCamera, Perspective};
-use juggler_tracer::integrator::Path as PathIntegrator;
-use juggler_tracer::light::{AnyLight, Directional};
-use juggler_tracer::material::{AnyMaterial, Diffuse, Plastic};
-use juggler_tracer::shape::{Mesh, Plane};
+use juggler_shape::{Mesh, Plane};
 use std::path::Path;
 
 /// Direction from the middle of the model to the camera: in front, a little right of and above it.
@@ -162,8 +162,8 @@ fn power_of_ten(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler_camera::Finder;
     use juggler_math::UVec2;
-    use juggler_tracer::camera::Finder;
 
     fn bounds(min: [f32; 3], max: [f32; 3]) -> Aabb {
         Aabb { min: min.into(), max: max.into() }

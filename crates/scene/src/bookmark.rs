@@ -4,7 +4,7 @@ use crate::document::{FileId, parse};
 use crate::schema;
 use jsonc_parser::ParseOptions;
 use jsonc_parser::cst::{CstInputValue, CstRootNode};
-use juggler_tracer::camera::AnyCamera;
+use juggler_camera::AnyCamera;
 use serde_json::{Value, json};
 
 /// A camera as people would write it: what is as without saying is left out.
@@ -68,8 +68,8 @@ fn input(value: &Value) -> CstInputValue {
 mod tests {
     use super::*;
     use crate::Scene;
+    use juggler_camera::Perspective;
     use juggler_math::Vec3;
-    use juggler_tracer::camera::Perspective;
 
     fn camera() -> AnyCamera {
         Perspective { eye: Vec3::new(0.1, 2.0, 3.0), direction: Some(-Vec3::Z), ..Perspective::default() }.into()

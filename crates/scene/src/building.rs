@@ -3,15 +3,15 @@
 use crate::Scene;
 use crate::description::{Backdrop, Object};
 use crate::item::Item;
+use juggler_camera::AnyCamera;
+use juggler_camera::film::AnyFilter;
+use juggler_camera::sampler::AnySampler;
 use juggler_imaging::Tone;
-use juggler_tracer::background::AnyBackground;
-use juggler_tracer::camera::AnyCamera;
-use juggler_tracer::film::AnyFilter;
-use juggler_tracer::integrator::AnyIntegrator;
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::AnyMaterial;
-use juggler_tracer::sampler::AnySampler;
-use juggler_tracer::texture::AnyTexture;
+use juggler_integrator::AnyIntegrator;
+use juggler_light::AnyLight;
+use juggler_light::background::AnyBackground;
+use juggler_material::AnyMaterial;
+use juggler_texture::AnyTexture;
 
 /// Building a scene.
 impl Scene {
@@ -59,7 +59,7 @@ impl Scene {
     }
 
     /// Sets the background: a color, or any kind of background such as
-    /// [`Sky`](juggler_tracer::background::Sky).
+    /// [`Sky`](juggler_light::background::Sky).
     #[must_use]
     pub fn background(mut self, background: impl Into<AnyBackground>) -> Self {
         self.description.background = Some(Backdrop::from(background.into()).into());

@@ -3,10 +3,10 @@
 use crate::description::{Backdrop, Description, Object};
 use crate::item::Item;
 use crate::path::{Path, Trail};
-use juggler_tracer::background::AnyBackground;
-use juggler_tracer::integrator::{self, AnyIntegrator, Classic};
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::{AnyMaterial, MaterialRef};
+use juggler_integrator::{AnyIntegrator, Classic};
+use juggler_light::AnyLight;
+use juggler_light::background::AnyBackground;
+use juggler_material::{AnyMaterial, MaterialRef};
 use std::fmt;
 
 /// An integrator, and why it is that one.
@@ -66,7 +66,7 @@ impl IntegratorChoice {
         }
         match Holdings::of(scene).first() {
             Some(part) => {
-                let integrator = integrator::Path::default().into();
+                let integrator = juggler_integrator::Path::default().into();
                 Self { integrator, reason: IntegratorReason::Holds(part) }
             }
             None => Self { integrator: Classic::default().into(), reason: IntegratorReason::Classic },

@@ -24,7 +24,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 ///
 /// ```
 /// use juggler_scene::{Object, Scene};
-/// use juggler_tracer::shape::Sphere;
+/// use juggler_shape::Sphere;
 ///
 /// let scene = Scene::new().add(Object::new(Sphere::default()).at(0.0, 1.0, 0.0));
 /// let compiled = scene.compile()?;

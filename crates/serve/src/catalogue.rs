@@ -1,10 +1,10 @@
 //! Scenes and names to choose from.
 
 use crate::edits::{MAX_EDGE, MAX_PIXELS, MAX_SAMPLES};
+use juggler::camera::sampler::AnySampler;
 use juggler::imaging::AnyCurve;
+use juggler::integrator::AnyIntegrator;
 use juggler::scene::{BuiltIn, Scene, built_in_scenes};
-use juggler::tracer::integrator::AnyIntegrator;
-use juggler::tracer::sampler::AnySampler;
 use juggler_session::Channel;
 use serde_json::{Value, json};
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! Worlds to be built: all that takes long, and what is wrong with a scene.
 
 use crate::subject::Subject;
+use juggler::camera::AnyCamera;
 use juggler::math::{Rgb, Vec3};
 use juggler::scene::{Names, Scene, SceneError};
-use juggler::tracer::camera::AnyCamera;
 use juggler::{Aov, Error, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

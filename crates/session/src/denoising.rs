@@ -2,10 +2,10 @@
 
 use crate::subject::Subject;
 use crate::worker::Worker;
+use juggler::camera::film::Film;
 use juggler::denoise::Guides;
 use juggler::math::Rgb;
-use juggler::tracer::film::Film;
-use juggler::tracer::render::Control;
+use juggler::render::Control;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

@@ -2,12 +2,12 @@
 
 use crate::Channel;
 use crate::screen::{Draft, color_of};
+use juggler::camera::film::{Film, Layout, Rect};
+use juggler::camera::layer::{self, LightGroup};
+use juggler::integrator::{Albedo, Depth, Emit, Integrator, Normals, PathState};
 use juggler::math::{Ray, Rgb, UVec2};
-use juggler::tracer::film::{Film, Layout, Rect};
-use juggler::tracer::integrator::{Albedo, Depth, Emit, Integrator, Normals, PathState};
-use juggler::tracer::layer::{self, LightGroup};
-use juggler::tracer::render::{self, Control, Job, Schedule, Scheduler, Stop, Stopped};
-use juggler::tracer::world::{Vertex, World};
+use juggler::render::{self, Control, Job, Schedule, Scheduler, Stop, Stopped};
+use juggler::world::{Vertex, World};
 use juggler::{LayerSet, Picture};
 
 /// Numbers of objects, or of materials, as colours.

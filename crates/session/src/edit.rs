@@ -1,6 +1,6 @@
 //! What people change. In JSON each is an object with one member: `{"fly": {"forward": 0.5, "yaw_degrees": 3}}`.
 
-use juggler::tracer::film::Rect;
+use juggler::camera::film::Rect;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

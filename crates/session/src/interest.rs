@@ -2,7 +2,7 @@
 
 use crate::subject::Subject;
 use juggler::math::{Aabb, Ray, Vec2, Vec3};
-use juggler::tracer::world::Vertex;
+use juggler::world::Vertex;
 
 impl Subject {
     /// The point and the vertex that is seen at a place of the film, in pixels.

@@ -2,8 +2,8 @@
 //! tracer. What results is plain: `eye`, `direction` and `up`, as a scene file would have it.
 
 use crate::{Fly, Orbit};
+use juggler::camera::{AnyCamera, Axes};
 use juggler::math::{Aabb, Ray, UVec2, Vec2, Vec3, fun};
-use juggler::tracer::camera::{AnyCamera, Axes};
 
 /// How far an orbit goes towards a pole.
 const POLE_DEGREES: f32 = 89.9;
@@ -127,8 +127,8 @@ fn around(axis: Vec3, degrees: f32, v: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use juggler::camera::{Orthographic, Perspective, ThinLens};
     use juggler::math::vec3;
-    use juggler::tracer::camera::{Orthographic, Perspective, ThinLens};
 
     const SIZE: UVec2 = UVec2::new(80, 60);
 

@@ -2,8 +2,8 @@
 
 use crate::screen::relative_error;
 use crate::subject::Subject;
+use juggler::camera::film::{Film, TILE};
 use juggler::scene::compile::Part;
-use juggler::tracer::film::{Film, TILE};
 use serde::Serialize;
 
 /// What is known about one pixel.

@@ -1,9 +1,9 @@
 //! Linear light → what a screen shows. Pure work on pixels, on the current rayon pool where it is much.
 
+use juggler::camera::film::{Film, Tile};
 use juggler::imaging::tone::{AnyCurve, Linear, Quantizer};
 use juggler::imaging::{Primaries, Tone};
 use juggler::math::Rgb;
-use juggler::tracer::film::{Film, Tile};
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! How things stand.
 
 use crate::Channel;
-use juggler::tracer::film::Rect;
+use juggler::camera::film::Rect;
 use serde::Serialize;
 use serde_json::Value;
 

@@ -3,16 +3,16 @@
 
 use crate::build::{Build, MOST_DENOISED, MOST_PIXELS, Task, pixels_of, text_of};
 use crate::{Edit, Setting, Status, pose};
+use juggler::camera::AnyCamera;
+use juggler::camera::film::Tile;
 use juggler::denoise::Denoiser;
+use juggler::integrator::AnyIntegrator;
 use juggler::math::{Rgb, Vec3};
 use juggler::scene::description::Animation;
 use juggler::scene::document::read_text;
 use juggler::scene::import::Content;
 use juggler::scene::kind::name_of;
 use juggler::scene::{Scene, camera_json, with_camera};
-use juggler::tracer::camera::AnyCamera;
-use juggler::tracer::film::Tile;
-use juggler::tracer::integrator::AnyIntegrator;
 use juggler::{MOST_GAIN, Picture, Settings, View};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

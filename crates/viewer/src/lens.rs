@@ -1,7 +1,7 @@
 //! What the camera says about a pixel: by how much it turns, and how wide it is where one looks.
 
+use juggler::camera::AnyCamera;
 use juggler::math::{UVec2, Vec2, Vec3};
-use juggler::tracer::camera::AnyCamera;
 use juggler_session::Status;
 
 /// How far a pixel in the middle of the picture reaches.

@@ -11,10 +11,10 @@ use eframe::egui::scroll_area::ScrollAreaOutput;
 use eframe::egui::{
     self, Button, CollapsingHeader, ComboBox, Grid, ProgressBar, RichText, ScrollArea, Slider, TextEdit, Ui, vec2,
 };
+use juggler::camera::sampler::AnySampler;
 use juggler::imaging::AnyCurve;
+use juggler::integrator::AnyIntegrator;
 use juggler::names;
-use juggler::tracer::integrator::AnyIntegrator;
-use juggler::tracer::sampler::AnySampler;
 use juggler_session::{Channel, Edit, Setting, Stage, Status};
 use std::collections::BTreeMap;
 
@@ -340,7 +340,7 @@ mod tests {
 
     #[test]
     fn the_panel_fits_a_window_of_1280_by_800() {
-        let region = Some(juggler::tracer::film::Rect { x: 0, y: 0, width: 9, height: 9 });
+        let region = Some(juggler::camera::film::Rect { x: 0, y: 0, width: 9, height: 9 });
         let light_groups = vec![("key".to_owned(), [1.0; 3]), ("rest".to_owned(), [1.0; 3])];
         let cameras = vec!["main".to_owned(), "top".to_owned()];
         let status = Status { max_depth: Some(5), region, light_groups, cameras, ..Status::default() };

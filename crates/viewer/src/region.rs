@@ -3,7 +3,7 @@
 use crate::picture::Placement;
 use crate::style;
 use eframe::egui::{Painter, Pos2, Stroke, StrokeKind};
-use juggler::tracer::film::Rect;
+use juggler::camera::film::Rect;
 
 /// Fewer pixels than that across are a slip of the hand.
 const LEAST: u32 = 4;

@@ -1,10 +1,10 @@
 //! The page's side: what the workers render is put together, shown, hashed and saved.
 
 use crate::patches::Patches;
+use juggler::camera::film::{Digest, Layout, Rect, TILE};
 use juggler::imaging::output::Destination;
 use juggler::imaging::{Format, Header, Tone, writer};
 use juggler::math::Rgb;
-use juggler::tracer::film::{Digest, Layout, Rect, TILE};
 use juggler_session::screen::Toner;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};

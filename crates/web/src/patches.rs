@@ -1,7 +1,7 @@
 //! Rectangles of pixels on their way from the workers to the page.
 
+use juggler::camera::film::Rect;
 use juggler::math::Rgb;
-use juggler::tracer::film::Rect;
 
 /// Numbers that say which pixels a rectangle has.
 const NUMBERS: usize = 5;

@@ -1,6 +1,6 @@
 //! Which worker renders what. Nothing here can change a bit of the picture.
 
-use juggler::tracer::film::{Layout, Rect};
+use juggler::camera::film::{Layout, Rect};
 
 /// Rows of a coarse frame that go to one worker together.
 const BAND: u32 = 8;

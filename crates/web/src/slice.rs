@@ -3,9 +3,9 @@
 use crate::patches::Patches;
 use crate::share::Share;
 use juggler::Picture;
+use juggler::camera::film::Film;
 use juggler::math::UVec2;
-use juggler::tracer::film::Film;
-use juggler::tracer::render::{Control, Exposure, Job, Stop, Work};
+use juggler::render::{Control, Exposure, Job, Stop, Work};
 use std::collections::BTreeSet;
 
 /// How much the newest step counts in what is known about the speed.

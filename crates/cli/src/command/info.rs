@@ -13,10 +13,10 @@ use clap::Args;
 use juggler::film;
 use juggler::imaging::layered::{LayerName, layer_names};
 use juggler::imaging::{self, Facts, Format, regular};
+use juggler::light::background::AnyBackground;
 use juggler::math::{Aabb, message};
 use juggler::scene::{Compiled, Illuminance, Scene, import};
-use juggler::tracer::background::AnyBackground;
-use juggler::tracer::world::Geometry;
+use juggler::world::Geometry;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 

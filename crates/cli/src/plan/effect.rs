@@ -7,8 +7,8 @@ use crate::failure::Failure;
 use crate::plan::{Encoding, Product, Reel};
 use juggler::Settings;
 use juggler::imaging::{AnimationFormat, Format, Look, Tone};
+use juggler::integrator::AnyIntegrator;
 use juggler::scene::Scene;
-use juggler::tracer::integrator::AnyIntegrator;
 
 /// What a command writes in the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::plan::{Product, Reel};
 use crate::value;
-use juggler::tracer::film::Rect;
+use juggler::camera::film::Rect;
 use std::env;
 use std::ops::Range;
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! What command lines come to.
 
 use super::*;
+use juggler::camera::film::Rect;
 use juggler::imaging::{Format, Look, SampleDepth};
-use juggler::tracer::film::Rect;
 
 fn plan(line: &str) -> Result<Plan, Failure> {
     Plan::new(RenderArgs::of(line.split(' ')).unwrap())

@@ -1,11 +1,11 @@
 //! `juggler merge` and `juggler info` on parts of pictures.
 
 use crate::harness::Folder;
+use juggler::camera::film::{Accumulator, Rect, Run, Tile, runs};
 use juggler::film::share::Work;
 use juggler::film::{Description, Layered, Share, Stop, write};
 use juggler::imaging::Tone;
 use juggler::math::Rgb;
-use juggler::tracer::film::{Accumulator, Rect, Run, Tile, runs};
 use std::fs;
 
 const SAMPLES: u32 = 40;

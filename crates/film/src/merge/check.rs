@@ -4,7 +4,7 @@ use super::Wanted;
 use super::complaint::{Complaint, MergeError, ToDo};
 use crate::part::{Description, Part, PartError, Share, Stop};
 use crate::share::Work;
-use juggler_tracer::film::Tile;
+use juggler_camera::film::Tile;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;

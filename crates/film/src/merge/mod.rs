@@ -14,8 +14,8 @@ pub use complaint::{Complaint, MergeError, ToDo};
 
 use crate::counts;
 use crate::part::{Chunk, Description, Part, PartError, PartWriter};
+use juggler_camera::film::{Digest, Layout, Rect, Summary, TILE, Tile};
 use juggler_math::Rgb;
-use juggler_tracer::film::{Digest, Layout, Rect, Summary, TILE, Tile};
 use std::ops::Range;
 use std::path::Path;
 

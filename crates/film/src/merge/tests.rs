@@ -4,8 +4,8 @@ use super::*;
 use crate::part::{Share, Stop, write};
 use crate::share::{Work, whole_tiles};
 use crate::testing::{clamped_tiles, description, tile, tiles};
+use juggler_camera::film::Rect;
 use juggler_math::testing::Random;
-use juggler_tracer::film::Rect;
 use std::path::PathBuf;
 
 const REGION: Rect = Rect { x: 5, y: 3, width: 70, height: 40 };
@@ -123,7 +123,7 @@ fn shares_in_any_order_are_the_whole() {
 
 #[test]
 fn what_clamping_took_is_summed_over_all_parts() {
-    let lost: juggler_tracer::film::Clamped =
+    let lost: juggler_camera::film::Clamped =
         clamped_tiles(REGION, 0..SAMPLES).iter().map(|(_, tile)| tile.clamped()).sum();
     let expected = lost.total() / REGION.area() as f64;
     assert!(expected > 0.0);

@@ -3,7 +3,7 @@
 use super::Description;
 use super::layers;
 use super::pack::{pack, unpack};
-use juggler_tracer::film::{Rect, Run, Tile};
+use juggler_camera::film::{Rect, Run, Tile};
 
 /// Most runs that a tile in a file may have.
 pub(super) const MAX_RUNS: usize = 4096;

@@ -1,9 +1,9 @@
 //! What a part says about itself: the JSON text at its head.
 
 use crate::share::whole_tiles;
+use juggler_camera::film::{BLOCK, Layout, Rect};
 use juggler_imaging::Viewpoint;
 use juggler_math::message::{MAX_QUOTE, excerpt};
-use juggler_tracer::film::{BLOCK, Layout, Rect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;

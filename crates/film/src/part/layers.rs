@@ -2,8 +2,8 @@
 
 use super::Layered;
 use super::pack::{pack_colors, unpack_colors};
+use juggler_camera::film::{Extras, MASKS, Mask};
 use juggler_math::Rgb;
-use juggler_tracer::film::{Extras, MASKS, Mask};
 
 /// Most things that a pixel may show: more than any has samples worth telling apart.
 const MOST_THINGS: usize = 1 << 16;

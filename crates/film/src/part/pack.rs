@@ -7,8 +7,8 @@
 //! idea of Masui and others, "A compression scheme for radio data in high performance computing", 2015). Planes of
 //! bytes and slower compressors were measured too: docs/benchmarks.md.
 
+use juggler_camera::film::Sum;
 use juggler_math::Rgb;
-use juggler_tracer::film::Sum;
 
 /// Channels of a sum.
 const CHANNELS: usize = 3;

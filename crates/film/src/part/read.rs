@@ -3,8 +3,8 @@
 use super::chunk::decode;
 use super::format::{ENTRY, Entry, Head, MAGIC, MAX_HEAD, PRELUDE, Prelude, SEAL, VERSION, in_words, layers};
 use super::{Description, PartError};
+use juggler_camera::film::{Layout, Tile};
 use juggler_imaging::regular;
-use juggler_tracer::film::{Layout, Tile};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};

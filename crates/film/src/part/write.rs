@@ -3,8 +3,8 @@
 use super::chunk::MAX_RUNS;
 use super::format::{Entry, Head, MAX_HEAD, PRELUDE, Prelude, SEAL, VERSION, layers};
 use super::{Chunk, Description, PartError};
+use juggler_camera::film::{Layout, Tile};
 use juggler_imaging::atomic::AtomicFile;
-use juggler_tracer::film::{Layout, Tile};
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;

@@ -6,7 +6,23 @@ use std::fs;
 use std::path::Path;
 
 /// Crates whose numbers decide pixels.
-const CRATES: [&str; 7] = ["math", "bvh", "tracer", "scene", "film", "imaging", "denoise"];
+const CRATES: [&str; 15] = [
+    "math",
+    "bvh",
+    "bsdf",
+    "shape",
+    "texture",
+    "material",
+    "light",
+    "camera",
+    "world",
+    "integrator",
+    "render",
+    "scene",
+    "film",
+    "imaging",
+    "denoise",
+];
 
 /// What the standard library takes from the platform, or leaves open; `juggler_math::fun` has all of it.
 const PLATFORM: [&str; 22] = [
@@ -20,7 +36,7 @@ const FUSED: [&str; 2] = ["bvh/src/node.rs", "bvh/src/triangles/common_origin.rs
 /// What comes before the tests of a file, without comments.
 fn code(path: &Path) -> String {
     let is_test = ["tests.rs", "testing.rs"].iter().any(|name| path.ends_with(name))
-        || path.iter().any(|part| ["tests", "contract", "benches"].iter().any(|t| part == *t));
+        || path.iter().any(|part| ["tests", "contract", "testing", "benches"].iter().any(|t| part == *t));
     if is_test {
         return String::new();
     }

@@ -2,8 +2,8 @@
 //! limbs, groups, meshes, the light, the camera.
 
 use juggler::math::Rgb;
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::render::Control;
 use juggler::{Picture, Settings};
 
 /// Everything in it moves, on bent ways.

@@ -2,7 +2,7 @@
 
 use juggler::scene::description::Description;
 use juggler::scene::{Item, Object, Scene};
-use juggler::tracer::shape::AnyShape;
+use juggler::shape::AnyShape;
 use juggler::{Picture, Settings};
 
 /// Meshes among objects and all that they hold, however deep.

@@ -3,8 +3,8 @@
 //!
 //! After a change that is meant to change pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test golden hashes::`.
 
+use juggler::render::Control;
 use juggler::scene::{Scene, built_in_scenes};
-use juggler::tracer::render::Control;
 use juggler::{Error, Picture, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::BTreeMap;

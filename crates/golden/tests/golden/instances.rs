@@ -1,11 +1,11 @@
 //! Groups that are stored once and placed often: the same pictures as without, in a fraction of the memory.
 
+use juggler::camera::Perspective;
+use juggler::material::Phong;
 use juggler::math::{Vec2, Vec3};
+use juggler::render::Control;
 use juggler::scene::{Object, Scene};
-use juggler::tracer::camera::Perspective;
-use juggler::tracer::material::Phong;
-use juggler::tracer::render::Control;
-use juggler::tracer::shape::{Mesh, MeshData, Sphere};
+use juggler::shape::{Mesh, MeshData, Sphere};
 use juggler::{Error, Picture, Settings};
 
 fn picture(scene: &Scene, integrator: &str) -> Picture {

@@ -4,13 +4,13 @@
 //! `JUGGLER_MATRIX=wide cargo test --release -p juggler-golden --test golden matrix::` takes larger pictures and all scenes.
 //! After a change that is meant to change pictures: `JUGGLER_BLESS=1 cargo test -p juggler-golden --test golden matrix::`.
 
+use juggler::camera::film::Film;
 use juggler::film::share::Work;
 use juggler::film::{Merge, PartError, Share, Wanted, write};
 use juggler::imaging::Options;
+use juggler::render::{Control, Scheduler};
 use juggler::scene::{Scene, built_in_scenes};
-use juggler::tracer::film::Film;
-use juggler::tracer::render::{Control, Scheduler};
-use juggler::tracer::world::simd_levels;
+use juggler::world::simd_levels;
 use juggler::{Error, Limit, Origin, Picture, Settings};
 use juggler_math::testing::skipped;
 use rayon::ThreadPoolBuilder;

@@ -5,10 +5,10 @@
 //! `JUGGLER_NOISE=all cargo test --release -p juggler-golden --test golden -- --nocapture noise::` prints the figures of more
 //! scenes, larger; the usual run is against 16 times the samples.
 
+use juggler::camera::film::Film;
 use juggler::math::Rgb;
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::film::Film;
-use juggler::tracer::render::Control;
 use juggler::{Limit, Picture, Settings};
 
 /// Samples from which noise is told.

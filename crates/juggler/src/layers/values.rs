@@ -1,9 +1,9 @@
 //! From what a film keeps to what files hold.
 
 use super::{Aov, LayerSet, cryptomatte};
+use juggler_camera::film::{Extras, Rect, Statistics, Tile};
+use juggler_camera::layer::{Beside, Layer, LightGroup};
 use juggler_math::Rgb;
-use juggler_tracer::film::{Extras, Rect, Statistics, Tile};
-use juggler_tracer::layer::{Beside, Layer, LightGroup};
 
 /// Which kind of mask tells what apart.
 const OBJECTS: usize = 0;

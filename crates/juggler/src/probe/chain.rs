@@ -2,9 +2,9 @@
 
 use super::luminance;
 use super::names::{Namer, Origin, Thing, event_name};
+use juggler_integrator::{Event, Scattering};
 use juggler_math::Rgb;
-use juggler_tracer::integrator::{Event, Scattering};
-use juggler_tracer::render::{Inspected, LightGain};
+use juggler_render::{Inspected, LightGain};
 use serde::Serialize;
 
 /// A place of a path.

@@ -3,9 +3,9 @@
 use super::outliers::{Field, Found, Outlier, error};
 use super::{Detail, Prober, luminance};
 use crate::Error;
+use juggler_camera::film::Summary;
 use juggler_math::Rgb;
-use juggler_tracer::film::Summary;
-use juggler_tracer::render::Control;
+use juggler_render::Control;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

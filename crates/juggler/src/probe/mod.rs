@@ -27,12 +27,12 @@ pub use tree::{Branch, Others};
 
 use crate::{Error, Picture};
 use chain::Brightest;
+use juggler_camera::film::Statistics;
+use juggler_integrator::AnyIntegrator;
 use juggler_math::{Rgb, Vec2};
+use juggler_render::{Control, Inspected, Job};
 use juggler_scene::Scene;
-use juggler_tracer::film::Statistics;
-use juggler_tracer::integrator::AnyIntegrator;
-use juggler_tracer::render::{self, Control, Inspected, Job};
-use juggler_tracer::world::{LightsApart, Vertex};
+use juggler_world::{LightsApart, Vertex};
 use names::Namer;
 use serde::Serialize;
 use shares::Sums;
@@ -160,7 +160,7 @@ impl<'s> Prober<'s> {
         let mut sums = Sums::default();
         let mut brightest = Brightest::new(detail.brightest);
         let mut spread = Spread::default();
-        let (mean, statistics) = render::inspect(&job, pixel, control, |sample| {
+        let (mean, statistics) = juggler_render::inspect(&job, pixel, control, |sample| {
             spread.add(&sample);
             if self.follows_paths() {
                 sums.add(&namer, &sample);

@@ -1,13 +1,13 @@
 //! What things are called: objects, materials, lights, and what paths did.
 
 use crate::Picture;
+use juggler_camera::layer::LightGroup;
+use juggler_integrator::{AnyIntegrator, Event, Scattering};
+use juggler_render::{Inspected, LightGain, PathVertex};
 use juggler_scene::Names;
 use juggler_scene::compile::Part;
 use juggler_scene::description::Description;
-use juggler_tracer::integrator::{AnyIntegrator, Event, Scattering};
-use juggler_tracer::layer::LightGroup;
-use juggler_tracer::render::{Inspected, LightGain, PathVertex};
-use juggler_tracer::world::{LightSource, LightsApart, Vertex, World};
+use juggler_world::{LightSource, LightsApart, Vertex, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

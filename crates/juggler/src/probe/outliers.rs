@@ -4,7 +4,7 @@
 //! times 1.4826, which is the standard deviation where they are normally distributed (Hampel 1974). Both do not mind what stands out
 //! among the neighbours themselves.
 
-use juggler_tracer::film::Statistics;
+use juggler_camera::film::Statistics;
 
 /// Pixels to each side that count as neighbours.
 const REACH: usize = 2;

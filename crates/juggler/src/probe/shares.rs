@@ -3,10 +3,10 @@
 use super::luminance;
 use super::names::{Namer, Origin};
 use super::{Branch, SampleProbe};
+use juggler_camera::layer::LightGroup;
+use juggler_integrator::Way;
 use juggler_math::Rgb;
-use juggler_tracer::integrator::Way;
-use juggler_tracer::layer::LightGroup;
-use juggler_tracer::render::Inspected;
+use juggler_render::Inspected;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

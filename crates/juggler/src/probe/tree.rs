@@ -3,9 +3,9 @@
 use super::chain::{self, Step};
 use super::names::{Namer, Origin, Thing, event_name};
 use super::shares::{Scale, add};
+use juggler_integrator::Event;
 use juggler_math::Rgb;
-use juggler_tracer::integrator::Event;
-use juggler_tracer::render::{Inspected, LightGain, PathVertex};
+use juggler_render::{Inspected, LightGain, PathVertex};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -29,8 +29,8 @@ fn builders_write_what_a_file_says() {
         .samples(4)
         .seed(7)
         .integrator(integrator::Path { max_depth: 3, ..Default::default() })
-        .sampler(juggler::tracer::sampler::Independent {})
-        .filter(juggler::tracer::film::Box::default())
+        .sampler(sampler::Independent {})
+        .filter(film::Box::default())
         .tone(Tone { exposure_stops: 1.0, ..Tone::new(AnyCurve::Agx(Default::default())) })
         .background(background::Sky::default())
         .add(Object::new(triangle()));

@@ -1,7 +1,7 @@
 //! A world that is made of an earlier one has the picture of one that is built anew.
 
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::render::Control;
 use juggler::{Error, Picture, Settings};
 use serde_json::{Value, json};
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! Cryptomatte as a reader of others takes it apart, against masks that are made without it: for each thing a picture in which it
 //! shines and all else is black.
 
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::render::Control;
 use juggler::{Aov, Picture, Settings};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,7 @@
 //! The scenes of the gallery and of the lighting recipes are without mistakes, show something, and are told of.
 
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::render::Control;
 use juggler::{Picture, Settings};
 use std::path::{Path, PathBuf};
 

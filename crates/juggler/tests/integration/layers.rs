@@ -1,8 +1,8 @@
 //! Layers beside the picture: known answers, and sums that must agree.
 
 use juggler::math::Rgb;
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::render::Control;
 use juggler::{Aov, Denoiser, Picture, Settings};
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! Motion vectors: what is seen goes as far on the film as the closed forms say.
 
 use juggler::imaging::Matrix4;
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::render::Control;
 use juggler::{Aov, Picture, Settings};
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Whether pictures that differ by noise alone are told from those that do not: on pictures as they are rendered.
 
 use juggler::imaging::significance::{Estimate, significance};
-use juggler::tracer::render::Control;
+use juggler::render::Control;
 use juggler::{Picture, Settings, estimate};
 use juggler_scene::Scene;
 

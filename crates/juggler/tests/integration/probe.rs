@@ -1,7 +1,7 @@
 //! Pixels that are asked about are those of the picture, and their light adds up.
 
 use juggler::probe::{Branch, Detail, Probe, Prober, Share};
-use juggler::tracer::render::Control;
+use juggler::render::Control;
 use juggler::{Picture, Settings};
 use juggler_scene::Scene;
 

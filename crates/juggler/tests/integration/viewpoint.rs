@@ -1,10 +1,10 @@
 //! From where a picture was taken: its matrices find what its pixels show.
 
+use juggler::camera::film::Rect;
 use juggler::imaging::{Matrix4, Options};
 use juggler::math::Vec3;
+use juggler::render::Control;
 use juggler::scene::Scene;
-use juggler::tracer::film::Rect;
-use juggler::tracer::render::Control;
 use juggler::{Aov, Picture, Settings};
 
 const CAMERAS: [&str; 3] = [

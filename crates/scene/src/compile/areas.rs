@@ -8,10 +8,10 @@ use crate::item::Item;
 use crate::motion::Tracks;
 use crate::path::Trail;
 use crate::report::Finding;
+use juggler_light::{AnyLight, Area};
+use juggler_material::{Emissive, MaterialRef, Sides};
 use juggler_math::{Motion, Transform};
-use juggler_tracer::light::{AnyLight, Area};
-use juggler_tracer::material::{Emissive, MaterialRef, Sides};
-use juggler_tracer::world::{Content, Object};
+use juggler_world::{Content, Object};
 use std::sync::Arc;
 
 /// The world's objects, and of each entry of the scene the number of its first shape.

@@ -6,10 +6,9 @@ use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
 use indexmap::IndexMap;
-use juggler_tracer::world;
 
 /// Most objects of a scene, those of groups counted as often as they are placed.
-pub const MAX_OBJECTS: u64 = world::MAX_OBJECTS;
+pub const MAX_OBJECTS: u64 = juggler_world::MAX_OBJECTS;
 /// Most objects that a scene stores.
 pub const MAX_STORED: u64 = 4_000_000;
 /// Most shapes of a scene that emit light, those of groups counted as often as they are placed.
@@ -197,7 +196,7 @@ fn count_stored(scene: &Description, counts: &mut Counts<'_>) -> u64 {
         let (held, depth) = store(objects_of(scene, name), counts);
         let Some((_, count)) = counts.get_index_mut(i) else { continue };
         let many = count.placements > 1 && count.objects.saturating_mul(count.placements) > SHARED_FROM;
-        let is_shared = many && held >= SHARED_SIZE && depth < world::MAX_DEPTH;
+        let is_shared = many && held >= SHARED_SIZE && depth < juggler_world::MAX_DEPTH;
         *count = Count { stored: held, depth, is_shared, ..*count };
     }
     stored(scene, counts)

@@ -2,10 +2,10 @@
 
 use crate::description::Description;
 use crate::integrator::{Holdings, IntegratorChoice};
+use juggler_camera::{AnyCamera, Perspective};
+use juggler_light::background::{AnyBackground, Solid};
+use juggler_light::{Ambient, AnyLight, Extent, Point};
 use juggler_math::{Aabb, Rgb, UVec2, Vec3, fun};
-use juggler_tracer::background::{AnyBackground, Solid};
-use juggler_tracer::camera::{AnyCamera, Perspective};
-use juggler_tracer::light::{Ambient, AnyLight, Extent, Point};
 
 /// Where the default camera stands, seen from the middle: in front, a little right of and above it.
 const TOWARDS_CAMERA: Vec3 = Vec3::new(0.35, 0.35, 1.0);

@@ -6,8 +6,8 @@ use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::Path;
 use crate::report::Finding;
-use juggler_tracer::material::{AnyMaterial, MaterialRef};
-use juggler_tracer::shape::AnyShape;
+use juggler_material::{AnyMaterial, MaterialRef};
+use juggler_shape::AnyShape;
 use std::collections::BTreeMap;
 
 /// Emitters of a scene whose groups do not contain themselves: shapes of emissive materials, and each triangle of such

@@ -5,11 +5,11 @@ use super::areas;
 use crate::description::Description;
 use crate::path::Path;
 use crate::report::Finding;
+use juggler_camera::AnyCamera;
+use juggler_material::{MaterialId, MaterialTable, Sides};
 use juggler_math::{Aabb, Motion, Ray, Transform, Vec3};
-use juggler_tracer::camera::AnyCamera;
-use juggler_tracer::material::{MaterialId, MaterialTable, Sides};
-use juggler_tracer::shape::AnyShape;
-use juggler_tracer::world::{Content, Object};
+use juggler_shape::AnyShape;
+use juggler_world::{Content, Object};
 
 /// Most emitters that are looked at.
 const MOST_EMITTERS: usize = 64;

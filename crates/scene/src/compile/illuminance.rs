@@ -3,10 +3,10 @@
 use crate::description::Description;
 use crate::path::Path;
 use crate::report::Finding;
+use juggler_light::AnyLight;
 use juggler_math::range::shown;
 use juggler_math::{Aabb, Vec2, Vec3, fun};
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::world::Lamp;
+use juggler_world::Lamp;
 use std::fmt;
 
 /// Illuminance below which a picture is near black: white in it becomes level 39 of 255 in sRGB.

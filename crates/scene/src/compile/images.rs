@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::store::Store;
 use juggler_imaging::raster::{Layout, decode_raster, inspect_raster};
 use juggler_imaging::{Encoding, ImageError, Raster, Samples};
-use juggler_tracer::texture::{AnyTexture, ColorSpace, Image, Images, Pyramid};
+use juggler_texture::{AnyTexture, ColorSpace, Image, Images, Pyramid};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 use std::path::PathBuf;

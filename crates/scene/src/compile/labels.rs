@@ -2,10 +2,10 @@
 
 use super::areas;
 use crate::description::Description;
-use juggler_tracer::layer::LightGroup;
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::MaterialId;
-use juggler_tracer::world::{Labels, Lamp};
+use juggler_camera::layer::LightGroup;
+use juggler_light::AnyLight;
+use juggler_material::MaterialId;
+use juggler_world::{Labels, Lamp};
 
 /// What light is called that belongs to no group.
 pub const REST: &str = "rest";

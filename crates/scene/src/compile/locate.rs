@@ -7,7 +7,7 @@ use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::kind::name_of;
 use crate::path::Path;
-use juggler_tracer::material::MaterialRef;
+use juggler_material::MaterialRef;
 
 /// Where a shape is described.
 #[derive(Clone, Debug, PartialEq, Eq)]

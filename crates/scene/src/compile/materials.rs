@@ -6,10 +6,10 @@ use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::{Path, Trail};
 use crate::report::Finding;
-use juggler_tracer::material::{
+use juggler_material::{
     AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
 };
-use juggler_tracer::texture::{Input, TextureTable};
+use juggler_texture::{Input, TextureTable};
 use std::sync::Arc;
 
 /// Compiles materials as objects ask for them.

@@ -9,7 +9,7 @@ use crate::path::{Path, Trail};
 use crate::report::{Finding, plain_io};
 use crate::store::Store;
 use juggler_math::{Aabb, Vec3};
-use juggler_tracer::shape::{InvalidShape, Mesh, MeshData, Shape};
+use juggler_shape::{InvalidShape, Mesh, MeshData, Shape};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -5,12 +5,12 @@ use crate::integrator::IntegratorChoice;
 use crate::motion::Tracks;
 use crate::path::Path;
 use crate::report::{Finding, Problems};
+use juggler_camera::{AnyCamera, InvalidCamera, Perspective, Shot};
+use juggler_light::AnyLight;
+use juggler_light::background::AnyBackground;
+use juggler_material::{MaterialId, MaterialTable};
 use juggler_math::{Aabb, Transform, UVec2, Vec3};
-use juggler_tracer::background::AnyBackground;
-use juggler_tracer::camera::{AnyCamera, InvalidCamera, Perspective, Shot};
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::{MaterialId, MaterialTable};
-use juggler_tracer::world::{Labels, Lamp, Object, World};
+use juggler_world::{Labels, Lamp, Object, World};
 use std::sync::Arc;
 
 pub(crate) mod areas;

@@ -9,8 +9,8 @@ use super::meshes::Files;
 use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::Trail;
-use juggler_tracer::material::{AnyMaterial, MaterialRef};
-use juggler_tracer::shape::AnyShape;
+use juggler_material::{AnyMaterial, MaterialRef};
+use juggler_shape::AnyShape;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 

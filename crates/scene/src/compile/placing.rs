@@ -8,10 +8,10 @@ use crate::item::Item;
 use crate::motion::{ListTracks, ObjectTrack, Tracks};
 use crate::path::{Path, Trail};
 use crate::report::Finding;
+use juggler_material::MaterialId;
 use juggler_math::{Motion, Transform, Vec3};
-use juggler_tracer::material::MaterialId;
-use juggler_tracer::shape::{AnyShape, Mesh, Sphere};
-use juggler_tracer::world::{self, Content as Placed, Level};
+use juggler_shape::{AnyShape, Mesh, Sphere};
+use juggler_world::{Content as Placed, Level};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ pub fn place(
     files: Files<'_>,
     materials: &mut Materials,
     findings: &mut Vec<Finding>,
-) -> (Vec<world::Object>, Vec<u32>) {
+) -> (Vec<juggler_world::Object>, Vec<u32>) {
     let mut preparing = Preparing { files, materials, findings };
     let groups = Trail::Root.key("groups");
     let still = ListTracks::new();
@@ -266,9 +266,9 @@ fn size(motion: &Motion, content: &Placed) -> f32 {
 }
 
 /// An object in its place, its turns round.
-pub fn placed(content: Placed, motion: Motion, material: Option<MaterialId>) -> world::Object {
+pub fn placed(content: Placed, motion: Motion, material: Option<MaterialId>) -> juggler_world::Object {
     let motion = if motion.moves() { motion.clone().smoothed(size(&motion, &content)) } else { motion };
-    world::Object { content, motion, material }
+    juggler_world::Object { content, motion, material }
 }
 
 struct Placing<'s> {
@@ -279,7 +279,12 @@ struct Placing<'s> {
 
 impl Placing<'_> {
     /// The objects of the world's own level, and of each of `count` entries the number of its first shape.
-    fn entries(&self, objects: &[Prepared<'_>], count: usize, plain: MaterialId) -> (Vec<world::Object>, Vec<u32>) {
+    fn entries(
+        &self,
+        objects: &[Prepared<'_>],
+        count: usize,
+        plain: MaterialId,
+    ) -> (Vec<juggler_world::Object>, Vec<u32>) {
         let (mut found, mut firsts, mut shapes) = (Vec::new(), Vec::with_capacity(count), 0u64);
         let number = |shapes: u64| u32::try_from(shapes).unwrap_or(u32::MAX);
         for object in objects {
@@ -287,14 +292,14 @@ impl Placing<'_> {
             let before = found.len();
             self.place(std::slice::from_ref(object), &Transform::IDENTITY.into(), Some(plain), &mut found);
             let new = found.get(before..).unwrap_or_default();
-            shapes = new.iter().map(world::Object::shapes).fold(shapes, u64::saturating_add);
+            shapes = new.iter().map(juggler_world::Object::shapes).fold(shapes, u64::saturating_add);
         }
         firsts.resize(count.max(firsts.len()), number(shapes));
         (found, firsts)
     }
 
     /// The objects of one level; those that say nothing are made of `inherited`.
-    fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<world::Object> {
+    fn objects(&self, objects: &[Prepared<'_>], inherited: Option<MaterialId>) -> Vec<juggler_world::Object> {
         let mut found = Vec::new();
         self.place(objects, &Transform::IDENTITY.into(), inherited, &mut found);
         found
@@ -305,7 +310,7 @@ impl Placing<'_> {
         objects: &[Prepared<'_>],
         parent: &Motion,
         inherited: Option<MaterialId>,
-        found: &mut Vec<world::Object>,
+        found: &mut Vec<juggler_world::Object>,
     ) {
         for object in objects {
             let motion = object.motion.then(parent);
@@ -329,7 +334,7 @@ fn objects_of(
     shapes: &[(Motion, Arc<AnyShape>)],
     motion: &Motion,
     material: Option<MaterialId>,
-    found: &mut Vec<world::Object>,
+    found: &mut Vec<juggler_world::Object>,
 ) {
     let object = |(place, shape): &(Motion, Arc<AnyShape>)| {
         placed(Placed::Shape(Arc::clone(shape)), place.then(motion), material)

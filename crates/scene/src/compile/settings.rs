@@ -4,7 +4,7 @@ use crate::description::{Description, Render};
 use crate::integrator::{Holdings, IntegratorChoice};
 use crate::path::Path;
 use crate::report::Finding;
-use juggler_tracer::light::AnyLight;
+use juggler_light::AnyLight;
 
 /// Longest edge of a picture.
 pub const MAX_EDGE: u32 = 65_536;

@@ -1,5 +1,5 @@
 //! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder all come
-//! from here and from the families of `juggler_tracer`.
+//! from here and from the families of kinds (`juggler_shape`, `juggler_material`, `juggler_light`, ...).
 
 use crate::item::Item;
 use crate::motion::{AnyItem, ListForm};
@@ -7,13 +7,13 @@ use crate::report::Finding;
 use crate::shared::Shared;
 use crate::validate::{self, NameScope, validate};
 use indexmap::IndexMap;
+use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
+use juggler_light::AnyLight;
+use juggler_light::background::{AnyBackground, Solid};
+use juggler_material::AnyMaterial;
 use juggler_math::Rgb;
-use juggler_tracer::background::{AnyBackground, Solid};
-use juggler_tracer::camera::AnyCamera;
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::AnyMaterial;
-use juggler_tracer::texture::AnyTexture;
+use juggler_texture::AnyTexture;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

@@ -6,9 +6,9 @@
 
 use super::{Axes, Chain, Limb, Objects, Rotate, TransformStep, transform};
 use crate::item::Item;
+use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_math::Vec3;
-use juggler_tracer::material::{AnyMaterial, MaterialRef};
-use juggler_tracer::shape::AnyShape;
+use juggler_shape::AnyShape;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

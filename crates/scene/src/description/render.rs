@@ -4,9 +4,9 @@
 //! {"render": {"size": [640, 360], "samples": 16, "seed": 0, "integrator": "path"}}
 //! ```
 
-use juggler_tracer::film::AnyFilter;
-use juggler_tracer::integrator::AnyIntegrator;
-use juggler_tracer::sampler::AnySampler;
+use juggler_camera::film::AnyFilter;
+use juggler_camera::sampler::AnySampler;
+use juggler_integrator::AnyIntegrator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

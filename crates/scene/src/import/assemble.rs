@@ -4,7 +4,7 @@ use super::Imported;
 use super::error::Fault;
 use super::faces::Faces;
 use juggler_math::{Vec2, Vec3};
-use juggler_tracer::shape::MeshData;
+use juggler_shape::MeshData;
 
 /// What a reader collected. Indices of `faces` are in range.
 #[derive(Default)]

@@ -32,7 +32,7 @@ pub use foreign::Foreign;
 pub use sniff::Content;
 
 use juggler_imaging::regular;
-use juggler_tracer::shape::MeshData;
+use juggler_shape::MeshData;
 use pieces::PIECE;
 use sniff::Format;
 use std::io::Read;

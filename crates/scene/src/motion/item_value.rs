@@ -5,11 +5,11 @@ use crate::description::{Backdrop, Description, Object, Objects, Render};
 use crate::item::Item;
 use crate::path::{Path, Step};
 use crate::shared::Shared;
+use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
-use juggler_tracer::camera::AnyCamera;
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::AnyMaterial;
-use juggler_tracer::texture::AnyTexture;
+use juggler_light::AnyLight;
+use juggler_material::AnyMaterial;
+use juggler_texture::AnyTexture;
 use serde_json::Value;
 
 /// Value of an item or of a list of items.

@@ -31,12 +31,12 @@ use crate::document::{Node, Place};
 use crate::item::{Item, Template};
 use crate::path::{Path, Step, Trail};
 use crate::shared::Shared;
+use juggler_camera::AnyCamera;
 use juggler_imaging::Tone;
-use juggler_tracer::camera::AnyCamera;
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::material::AnyMaterial;
-use juggler_tracer::shape::AnyShape;
-use juggler_tracer::texture::AnyTexture;
+use juggler_light::AnyLight;
+use juggler_material::AnyMaterial;
+use juggler_shape::AnyShape;
+use juggler_texture::AnyTexture;
 use serde::Serialize;
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@
 use juggler_scene::animate::{depends_on_time, resolve};
 use juggler_scene::document::{Node, Sources};
 use juggler_scene::{Object, Scene, SceneError};
-use juggler_tracer::shape::Sphere;
+use juggler_shape::Sphere;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 //! Mesh files given as scenes, and files of other programs.
 
 use crate::import_files::asset;
+use juggler_integrator::AnyIntegrator;
 use juggler_scene::{Bundle, Scene, SceneError};
-use juggler_tracer::integrator::AnyIntegrator;
 use std::fs;
 use std::path::Path;
 

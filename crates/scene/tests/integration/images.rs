@@ -4,7 +4,7 @@ use juggler_imaging::{Format, Header, Options, Tone, create};
 use juggler_math::{Image, Rgb, color::srgb_decode};
 use juggler_scene::compile::{Library, estimate_picture};
 use juggler_scene::{Bundle, Scene};
-use juggler_tracer::texture::ColorSpace;
+use juggler_texture::ColorSpace;
 use std::fs;
 use std::path::Path;
 use std::process::Command;

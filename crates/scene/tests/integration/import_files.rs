@@ -6,7 +6,7 @@
 use juggler_math::testing::skipped;
 use juggler_math::{DVec3, Vec3, hash};
 use juggler_scene::import::{Fault, Imported, Limits, Place, load, parse};
-use juggler_tracer::shape::MeshData;
+use juggler_shape::MeshData;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

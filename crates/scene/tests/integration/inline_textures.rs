@@ -1,8 +1,8 @@
 //! Textures that are written in place, where the name of one may stand.
 
+use juggler_material::AnyMaterial;
 use juggler_scene::{Problems, Scene, SceneError};
-use juggler_tracer::material::AnyMaterial;
-use juggler_tracer::texture::{AnyTexture, Input};
+use juggler_texture::{AnyTexture, Input};
 
 /// A scene with this for the color of its only material.
 fn scene(diffuse: &str, more: &str) -> String {

@@ -1,13 +1,13 @@
 //! The Juggler's poses against the closed forms of "Project Amiga Juggler" (Michael Birken, 2010, step 27) and
 //! numbers computed from them by hand.
 
+use juggler_light::background::AnyBackground;
 use juggler_math::{DVec3, Vec3};
 use juggler_scene::compile::{Assembly, Files, Library};
 use juggler_scene::document::Sources;
 use juggler_scene::{Scene, Tracks};
-use juggler_tracer::background::AnyBackground;
-use juggler_tracer::shape::AnyShape;
-use juggler_tracer::world::Object;
+use juggler_shape::AnyShape;
+use juggler_world::Object;
 use std::f64::consts::TAU;
 
 const NEAR: f64 = 2e-4;

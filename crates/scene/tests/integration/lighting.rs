@@ -1,11 +1,11 @@
 //! Files that light comes from: how often they are read, what they are part of, what wrong ones say.
 
 use juggler_imaging::{Format, Header, create};
+use juggler_light::AnyLight;
 use juggler_math::{Image, Ray, Rgb, Vec3};
 use juggler_scene::compile::estimate_panorama;
 use juggler_scene::{Bundle, Scene};
-use juggler_tracer::light::AnyLight;
-use juggler_tracer::world::World;
+use juggler_world::World;
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -1,11 +1,11 @@
 //! A scene is a value: what a program changes is checked, seen at every frame, written and read again.
 
 use super::mutations::Numbers;
+use juggler_material::{AnyMaterial, MaterialRef, Phong};
 use juggler_math::Vec3;
 use juggler_scene::description::{GroupName, Visible};
 use juggler_scene::{Object, Scene, SceneError, TransformStep, built_in_scenes};
-use juggler_tracer::material::{AnyMaterial, MaterialRef, Phong};
-use juggler_tracer::shape::{Mesh, Shape, Sphere};
+use juggler_shape::{Mesh, Shape, Sphere};
 use serde_json::{Value, json};
 
 const MOVING: &str = r#"{"version": 1, "animation": {"frames": 8, "frames_per_second": 4},

@@ -271,7 +271,7 @@ fn what_people_see_in_a_terminal_has_colors() {
 #[test]
 fn scenes_made_by_programs_are_checked_too() {
     use juggler_scene::Object;
-    use juggler_tracer::shape::Sphere;
+    use juggler_shape::Sphere;
     let wrong = Scene::new()
         .add(Object::new(Sphere { radius: -1.0 }))
         .add(Object::new(Sphere { radius: f32::NAN }))

@@ -1,7 +1,7 @@
 //! Every kind of edit: what it does, and what it says when it cannot be.
 use crate::{PATIENCE, until};
+use juggler::camera::film::Rect;
 use juggler::scene::{Scene, built_in_scenes};
-use juggler::tracer::film::Rect;
 use juggler_session::{Channel, Edit, Fly, Options, Orbit, Session, Setting, Stage, Status};
 use serde_json::json;
 use std::fs;

@@ -1,6 +1,6 @@
 //! What a session shows in the end is what `juggler render` writes.
+use juggler::render::{Control, Scheduler};
 use juggler::scene::Scene;
-use juggler::tracer::render::{Control, Scheduler};
 use juggler::{Error, Picture, Settings};
 use juggler_session::{Edit, Fly, Options, Orbit, Session, Setting, Stage, Status};
 use std::sync::Arc;

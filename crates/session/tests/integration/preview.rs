@@ -1,10 +1,10 @@
 //! What is shown before a picture is finished: passes over all of it, denoised previews, and the point that orbits turn about.
 use crate::until;
+use juggler::camera::film::{Film, Layout};
 use juggler::denoise::{Denoiser, Guides};
 use juggler::math::Rgb;
+use juggler::render::{self, Control, Stop};
 use juggler::scene::Scene;
-use juggler::tracer::film::{Film, Layout};
-use juggler::tracer::render::{self, Control, Stop};
 use juggler::{Picture, Settings};
 use juggler_session::{Channel, Edit, Fly, Options, Orbit, Session, Setting, Stage, Status};
 use std::sync::{Arc, Mutex};

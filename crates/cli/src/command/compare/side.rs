@@ -2,13 +2,13 @@
 
 use crate::failure::Failure;
 use crate::reproduce::SAMPLES;
+use juggler::camera::film::{BLOCK, Rect};
 use juggler::estimate;
 use juggler::film::{self, Description, Merge, Wanted};
 use juggler::imaging::layered::read_layer;
 use juggler::imaging::significance::Estimate;
 use juggler::imaging::{self, Facts, Format, regular};
 use juggler::math::{Image, Rgb};
-use juggler::tracer::film::{BLOCK, Rect};
 use std::path::Path;
 
 /// One of the pictures.

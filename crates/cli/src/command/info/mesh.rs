@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::format::bytes;
 use juggler::math::Aabb;
 use juggler::scene::import::{Imported, Limits, load};
-use juggler::tracer::shape::{Mesh, Shape};
+use juggler::shape::{Mesh, Shape};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;

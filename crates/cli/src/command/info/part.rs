@@ -3,8 +3,8 @@
 use super::row;
 use crate::failure::Failure;
 use crate::format::bytes;
+use juggler::camera::film::Rect;
 use juggler::film::{Description, Part, Share, Stop};
-use juggler::tracer::film::Rect;
 use serde_json::json;
 use std::path::Path;
 

@@ -3,10 +3,10 @@
 
 use crate::failure::Failure;
 use crate::memory;
+use juggler::camera::film::{Extras, Sum, TILE};
 use juggler::denoise::Guides;
 use juggler::film;
 use juggler::imaging::{Format, Header};
-use juggler::tracer::film::{Extras, Sum, TILE};
 use juggler::{Aov, LayerSet};
 
 /// Pixels of a band of rows that are joined at once, unless one row of tiles has more.

@@ -12,7 +12,7 @@ use crate::source;
 use crate::value;
 use clap::Args;
 use juggler::probe::{Detail, Prober};
-use juggler::tracer::render::Control;
+use juggler::render::Control;
 use juggler::{Picture, Settings};
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;

@@ -9,8 +9,8 @@ use juggler::Limit;
 use juggler::denoise::Guides;
 use juggler::imaging::Header;
 use juggler::memory::{Effort, Memory, Part, sum};
+use juggler::render::BAND_PIXELS;
 use juggler::scene::Scene;
-use juggler::tracer::render::BAND_PIXELS;
 
 /// Samples of a pixel from which on a film's frame is kept while it is under way: that takes as long as a third of a sample, and
 /// what has fewer is soon begun anew.

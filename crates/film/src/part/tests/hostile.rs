@@ -3,8 +3,8 @@
 use super::super::format::{Entry, Head, Layer, layers};
 use crate::testing::{description, place, tile, tiles};
 use crate::*;
+use juggler_camera::film::{Layout, Rect};
 use juggler_math::testing::Random;
-use juggler_tracer::film::{Layout, Rect};
 use std::path::Path;
 
 /// Two pixels of one tile, 21 samples: two runs.

@@ -3,8 +3,8 @@
 use super::super::pack::{pack, unpack};
 use crate::testing::{clamped_tiles, description, place, tile, tiles};
 use crate::*;
+use juggler_camera::film::{Layout, Rect, Run, Sum, Tile};
 use juggler_imaging::Viewpoint;
-use juggler_tracer::film::{Layout, Rect, Run, Sum, Tile};
 use proptest::prelude::*;
 
 const REGION: Rect = Rect { x: 5, y: 3, width: 40, height: 20 };

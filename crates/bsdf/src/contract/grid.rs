@@ -1,0 +1,159 @@
+//! Energy and reciprocity over a grid of roughness, index of refraction and angle.
+
+use super::*;
+use crate::{Conductor, Dielectric, Fresnel, Principled, ThinDielectric};
+
+const ALPHAS: [f32; 6] = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
+const IORS: [f32; 6] = [1.1, 1.33, 1.5, 2.0, 2.4, 4.0];
+const COSINES: [f32; 6] = [0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
+
+/// A direction of this cosine, above or below, turned a little.
+fn towards(cos: f32) -> Vec3 {
+    let along = (1.0 - cos * cos).max(0.0).sqrt();
+    Vec3::new(0.8 * along, 0.6 * along, cos)
+}
+
+/// Both sides of each of the angles.
+fn ways() -> impl Iterator<Item = Vec3> {
+    COSINES.into_iter().flat_map(|cos| [towards(cos), towards(-cos)])
+}
+
+#[test]
+fn clear_borders_and_panes_keep_all_light_and_add_none() {
+    for alpha in ALPHAS.map(Vec2::splat) {
+        for ior in IORS {
+            let border = (Bsdf::from(Dielectric::new(ior, alpha)), Dielectric::compensated(ior, alpha).into());
+            let pane = (Bsdf::from(ThinDielectric::new(ior, alpha)), ThinDielectric::compensated(ior, alpha).into());
+            for ((once, all), near) in [(border, 0.002), (pane, 0.035)] {
+                for wo in ways() {
+                    let (once, all) = (furnace(&once, wo, 48).g, furnace(&all, wo, 48).g);
+                    assert!(once <= 1.001, "{alpha} {ior} {wo}: {once}");
+                    assert!((all - 1.0).abs() <= near, "{alpha} {ior} {wo}: {all}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn metals_keep_all_light_and_add_none() {
+    for alpha in ALPHAS.map(Vec2::splat) {
+        for cos in COSINES {
+            let mirror = Conductor::compensated(Fresnel::WHITE, alpha).into();
+            let energy = furnace(&mirror, towards(cos), 48).g;
+            assert!((0.985..=1.015).contains(&energy), "{alpha} {cos}: {energy}");
+            for f0 in [0.04, 0.5, 0.9] {
+                let fresnel = Fresnel::tinted(Rgb::splat(f0), Rgb::WHITE);
+                let [once, all] = [Conductor::new(fresnel, alpha), Conductor::compensated(fresnel, alpha)]
+                    .map(|metal| furnace(&metal.into(), towards(cos), 192).g);
+                assert!(once <= all + 1e-3 && all <= 1.0, "{alpha} {cos} {f0}: {once} {all}");
+            }
+        }
+    }
+}
+
+/// The integral of the values over all directions, by the midpoints of cells that are even in cosine-weighted directions: what
+/// light sampling sees, whatever directions the lobe itself samples.
+fn integral(bsdf: &Bsdf, wo: Vec3, ior: f32) -> f64 {
+    let (rings, sectors) = (300, 64);
+    let mut sum = 0.0;
+    for (i, j) in (0..rings).flat_map(|i| (0..sectors).map(move |j| (i, j))) {
+        let (z, size) = (((i as f32 + 0.5) / rings as f32).sqrt(), 1.0 / rings as f32);
+        let (sin, cos) = fun::sin_cos_turns((j as f32 + 0.5) / sectors as f32);
+        let along = (1.0 - z * z).sqrt();
+        for z in [z, -z] {
+            let scale = if z * wo.z > 0.0 {
+                1.0
+            } else if wo.z > 0.0 {
+                ior * ior
+            } else {
+                1.0 / (ior * ior)
+            };
+            let value = bsdf.eval(wo, Vec3::new(along * cos, along * sin, z)).g * scale / z.abs();
+            sum += f64::from(value * size * std::f32::consts::PI) / f64::from(sectors);
+        }
+    }
+    sum
+}
+
+#[test]
+fn values_of_clear_borders_keep_all_light_and_add_none() {
+    for alpha in [(0.5, 0.5), (0.8, 0.8), (1.0, 1.0), (0.9, 0.4), (0.5, 0.7)].map(Vec2::from) {
+        for ior in [1.5, 1.9, 2.4] {
+            for wo in ways().filter(|wo| wo.z.abs() > 0.1) {
+                let energy = integral(&Dielectric::compensated(ior, alpha).into(), wo, ior);
+                let near = if alpha.x == alpha.y { 0.01 } else { 0.03 };
+                assert!((energy - 1.0).abs() < near, "{alpha} {ior} {wo}: {energy}");
+            }
+        }
+    }
+}
+
+/// What layers return into rough glass by their values, which samples need not follow to the letter.
+#[test]
+fn values_of_glass_under_layers_keep_light_on_average() {
+    let white = Principled { transmission: 1.0, sheen_roughness: 0.5, ..Principled::default() };
+    for (clearcoat, sheen) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+        for roughness in [0.55, 0.9] {
+            let numbers = Principled { clearcoat, sheen_color: Rgb::splat(sheen), roughness, ..white };
+            let bsdf = Bsdf::with_lobes(|bsdf| numbers.add_lobes(1.5, bsdf));
+            let cosines = (0..6u8).map(|i| ((f32::from(i) + 0.5) / 6.0).sqrt());
+            let mean = cosines.map(|cos| integral(&bsdf, towards(-cos), 1.5)).sum::<f64>() / 6.0;
+            assert!((mean - 1.0).abs() < 0.01, "{clearcoat} {sheen} {roughness}: {mean}");
+        }
+    }
+}
+
+/// Rougher along x than along y.
+#[test]
+fn brushed_surfaces_keep_light_and_add_none() {
+    for alpha in [(0.2, 0.02), (0.3, 0.1), (0.5, 0.05), (0.6, 0.3), (1.0, 0.1), (1.0, 0.5)].map(Vec2::from) {
+        for turn in [0.0, 0.125, 0.25f32] {
+            let (sin, cos) = fun::sin_cos_turns(turn);
+            for w in ways() {
+                let along = w.x.hypot(w.y);
+                let wo = Vec3::new(along * cos, along * sin, w.z);
+                for ior in IORS {
+                    let energy = furnace(&Dielectric::compensated(ior, alpha).into(), wo, 32).g;
+                    assert!((energy - 1.0).abs() <= 0.002, "{alpha} {ior} {wo}: {energy}");
+                    let energy = furnace(&ThinDielectric::compensated(ior, alpha).into(), wo, 32).g;
+                    assert!((energy - 1.0).abs() <= 0.03, "{alpha} {ior} {wo}: {energy}");
+                }
+                let energy = furnace(&Conductor::compensated(Fresnel::WHITE, alpha).into(), wo, 32).g;
+                let expected = if w.z > 0.0 { 1.0 } else { 0.0 };
+                assert!((energy - expected).abs() <= 0.03, "{alpha} {wo}: {energy}");
+            }
+        }
+    }
+}
+
+/// Where light goes it comes from alike: by directions that are scattered, so that nothing is compared with nothing. Radiance
+/// is that over the square of the index.
+#[test]
+fn what_is_scattered_may_come_back() {
+    let mut random = Random::new(98);
+    for alpha in [(0.05, 0.05), (0.2, 0.2), (0.5, 0.5), (1.0, 1.0), (0.6, 0.3), (0.5, 0.05)].map(Vec2::from) {
+        for ior in IORS {
+            let lobes: [Bsdf; 5] = [
+                Dielectric::new(ior, alpha).into(),
+                Dielectric::compensated(ior, alpha).into(),
+                ThinDielectric::new(ior, alpha).into(),
+                ThinDielectric::compensated(ior, alpha).into(),
+                Conductor::compensated(Fresnel::Dielectric { ior, color: Rgb::WHITE }, alpha).into(),
+            ];
+            for (number, bsdf) in lobes.iter().enumerate() {
+                let (mut crossed, mut stayed) = (0, 0);
+                for wo in ways().flat_map(|wo| [wo; 20]) {
+                    let Some(sample) = bsdf.sample(wo, random.vec2(), random.f32()) else { continue };
+                    let wi = sample.wi;
+                    let there = bsdf.eval(wo, wi).g / wi.z.abs() * sample.ior * sample.ior;
+                    let back = bsdf.eval(wi, wo).g / wo.z.abs();
+                    let near = (there - back).abs() <= 0.01 * there.max(back) + 1e-4;
+                    assert!(near, "{number} {alpha} {ior} {wo} {wi}: {there} {back}");
+                    *if sample.is_transmitted(wo) { &mut crossed } else { &mut stayed } += 1;
+                }
+                assert!(stayed > 2 && (crossed > 2 || number == 4), "{number} {alpha} {ior}: {stayed} {crossed}");
+            }
+        }
+    }
+}

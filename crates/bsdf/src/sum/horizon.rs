@@ -1,0 +1,135 @@
+//! Energy of lobes whose frame stands on a shading normal that a map has turned.
+//!
+//! Normal maps and bump maps turn the shading normal, which is z, away from the geometric normal g.
+//! The planes of z and g bound two lunes of directions that lie above one plane and below the
+//! other. A path that the lobes send into a lune ends in the surface itself, so its energy is lost.
+//! Schüssler, Heitz, Hanika and Dachsbacher (2017) conserve it with a microsurface of two facets,
+//! between which light is scattered any number of times; their closed form stops after two bounces.
+//!
+//! Here, a bijection spreads the light of a lune over directions that both normals have on the same
+//! side. Let ψ be the angle of a direction about the line in which both planes meet, measured from
+//! the plane of g towards the side to which z leans, and let β be the angle between z and g.
+//! Reflected directions below the plane of g have ψ between -β and 0, and go to -s ψ, with s =
+//! min(4, (π - β) / β). Since dω = sin θ dθ dψ, with θ measured from that line, the bijection
+//! scales solid angles by s. Values and densities therefore become f(ψ) + f(-ψ / s) / s.
+//! Transmitted directions above the plane of g are spread likewise, with all signs turned.
+//!
+//! The bijection conserves the energy of any sum of lobes for any viewer, and the weight of each
+//! sample. Lobes end at the plane of z, so no seam shows at ψ = s β. A small s brightens grazing
+//! light (s = 1 reflects a lune at the plane of g, and doubles grazing light); a large s blurs
+//! highlights that the plane of g cuts.
+//!
+//! The result is not reciprocal, as that of no shading normal is (Veach 1997, section 5.3).
+
+use super::Bsdf;
+use crate::{BsdfSample, Scatter};
+use juggler_math::{Rgb, Vec2, Vec3, fun};
+use std::f32::consts::PI;
+
+/// The geometric surface in the frame of a shading normal z that differs from its normal g.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Horizon {
+    /// g: unit, on the side of z.
+    normal: Vec3,
+    /// Unit vector along the geometric surface, in the direction in which z leans.
+    lean: Vec3,
+    /// s: factor by which the light of a lune is spread.
+    stretch: f32,
+}
+
+/// Largest stretch.
+const WIDEST: f32 = 4.0;
+
+/// Sine of the angle between both normals below which they count as the same.
+const LEAST_SINE: f32 = 1e-3;
+
+impl Horizon {
+    /// Horizon of a unit geometric normal on the side of z; `None` where the normal hardly differs
+    /// from z.
+    fn new(normal: Vec3) -> Option<Self> {
+        let (sine, cosine) = ((normal.x * normal.x + normal.y * normal.y).sqrt(), normal.z);
+        if !(sine > LEAST_SINE && cosine > 0.0) {
+            return None;
+        }
+        let angle = fun::atan2(sine, cosine);
+        let lean = (Vec3::Z - normal * cosine) / sine;
+        Some(Self { normal, lean, stretch: WIDEST.min((PI - angle) / angle) })
+    }
+
+    /// Whether a direction lies in a lune: z and the geometric normal have it on different sides.
+    #[inline]
+    fn divides(&self, w: Vec3) -> bool {
+        (w.z < 0.0) != (self.normal.dot(w) < 0.0)
+    }
+
+    /// Maps a direction in a lune to the direction in which its light goes on.
+    fn spread(&self, w: Vec3) -> Vec3 {
+        let side = if w.z < 0.0 { -1.0 } else { 1.0 };
+        self.turned(w * side, -self.stretch) * side
+    }
+
+    /// Inverse of [`Horizon::spread`] for a direction `w` outside of both lunes; `None` where no
+    /// light of a lune is spread to.
+    fn source(&self, w: Vec3) -> Option<Vec3> {
+        let side = if w.z < 0.0 { -1.0 } else { 1.0 };
+        let source = self.turned(w * side, -1.0 / self.stretch);
+        (source.z > 0.0).then_some(source * side)
+    }
+
+    /// Direction with ψ `factor` times that of `w` and the same angle from the line in which both
+    /// planes meet.
+    fn turned(&self, w: Vec3, factor: f32) -> Vec3 {
+        let (along, up) = (w.dot(self.lean), w.dot(self.normal));
+        let (sin, cos) = fun::sin_cos(fun::atan2(up, along) * factor);
+        let radius = (along * along + up * up).sqrt();
+        w + self.lean * (radius * cos - along) + self.normal * (radius * sin - up)
+    }
+}
+
+impl Bsdf {
+    /// Sets the geometric normal, a unit vector in the frame of the lobes on either side of the
+    /// surface, where a map has turned the shading normal. No light is then scattered to directions
+    /// that both normals have on different sides; its energy is spread over other directions.
+    pub fn set_geometric_normal(&mut self, normal: Vec3) {
+        self.horizon = Horizon::new(if normal.z < 0.0 { -normal } else { normal });
+    }
+
+    /// [`Bsdf::eval_pdf`] with a horizon.
+    pub(super) fn eval_pdf_above(&self, horizon: &Horizon, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if horizon.divides(wi) {
+            return (Rgb::BLACK, 0.0);
+        }
+        let (value, pdf) = self.eval_pdf_of_lobes(wo, wi);
+        let Some(source) = horizon.source(wi) else { return (value, pdf) };
+        let (more, density) = self.eval_pdf_of_lobes(wo, source);
+        (value + more / horizon.stretch, pdf + density / horizon.stretch)
+    }
+
+    /// [`Bsdf::sample`] with a horizon.
+    pub(super) fn sample_above(&self, horizon: &Horizon, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
+        let sample = self.sample_of_lobes(wo, u, choice)?;
+        let share = 1.0 / horizon.stretch;
+        let (wi, own, other) = if horizon.divides(sample.wi) {
+            let wi = horizon.spread(sample.wi);
+            (wi, share, Some((wi, 1.0)))
+        } else {
+            (sample.wi, 1.0, horizon.source(sample.wi).map(|source| (source, share)))
+        };
+        let Some((other, share)) = other.filter(|_| sample.scatter != Scatter::Specular) else {
+            return Some(BsdfSample { wi, ..sample });
+        };
+        // Two directions of the lobes map to this one: combine their values and densities.
+        let (value, density) = self.eval_pdf_of_lobes(wo, other);
+        let pdf = sample.pdf * own + density * share;
+        let weight = (sample.weight * (sample.pdf * own) + value * share) / pdf;
+        Some(BsdfSample { wi, weight, pdf, ..sample })
+    }
+
+    /// Maps a delta's direction out of the lunes.
+    pub(super) fn delta_above(&self, delta: BsdfSample) -> BsdfSample {
+        match &self.horizon {
+            Some(horizon) if horizon.divides(delta.wi) => BsdfSample { wi: horizon.spread(delta.wi), ..delta },
+            _ => delta,
+        }
+    }
+}

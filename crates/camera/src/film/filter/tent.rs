@@ -1,0 +1,45 @@
+//! A tent: falls in a straight line from the centre to the radius.
+//!
+//! ```json
+//! {"tent": {"radius": 1}}
+//! ```
+
+use super::{Filter, Reconstruction};
+use juggler_math::Vec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Falls in a straight line from the centre to the radius.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Tent {
+    /// Radius in pixels.
+    #[schemars(range(min = 0.1, max = 16))]
+    pub radius: f32,
+}
+
+impl Default for Tent {
+    fn default() -> Self {
+        Self { radius: 1.0 }
+    }
+}
+
+impl Reconstruction for Tent {
+    fn filter(&self, _samples: u32) -> Filter {
+        Filter::Tent(self.radius)
+    }
+}
+
+/// The unit tent by inverting its distribution along each axis.
+pub fn warp(u: Vec2) -> Vec2 {
+    let one = |u: f32| if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
+    Vec2::new(one(u.x), one(u.y))
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Tent {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { radius: 2.0 }]
+    }
+}

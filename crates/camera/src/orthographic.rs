@@ -1,0 +1,173 @@
+//! A camera without perspective: all rays are parallel.
+//!
+//! ```json
+//! {"orthographic": {"eye": [0, 2, 6], "look_at": [0, 1, 0], "height": 4}}
+//! ```
+//!
+//! Rays start on the film, which stands at `eye`: what lies behind it is not seen.
+
+use super::field_of_view::positive;
+use super::pose::{Axes, Move, Pose};
+use super::{Camera, InvalidCamera, Projection};
+use juggler_math::{UVec2, Vec2, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+const DEFAULT_HEIGHT: f32 = 4.0;
+
+/// A camera without perspective: all rays are parallel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Orthographic {
+    /// Where it stands, world space.
+    #[schemars(with = "[f32; 3]")]
+    pub eye: Vec3,
+    /// Point that it looks at, world space; the origin when neither this nor `direction` is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<[f32; 3]>")]
+    pub look_at: Option<Vec3>,
+    /// Direction in which it looks, any length; instead of `look_at`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<[f32; 3]>")]
+    pub direction: Option<Vec3>,
+    /// Direction to which the picture's top leans.
+    #[schemars(with = "[f32; 3]")]
+    pub up: Vec3,
+    /// Turns to the right from there.
+    pub yaw_degrees: f32,
+    /// Then tilts upwards.
+    pub pitch_degrees: f32,
+    /// Then leans its top to the right.
+    pub roll_degrees: f32,
+    /// Then steps along its own axes.
+    pub r#move: Move,
+    /// Height of what the picture shows, scene units. With `width` alone it follows from the picture's
+    /// shape (pixels are square); with both, the picture is stretched; with neither, it is 4.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub height: Option<f32>,
+    /// Width of what the picture shows, scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub width: Option<f32>,
+}
+
+impl Default for Orthographic {
+    fn default() -> Self {
+        Self {
+            eye: Vec3::new(0.0, 0.0, 5.0),
+            look_at: None,
+            direction: None,
+            up: Vec3::Y,
+            yaw_degrees: 0.0,
+            pitch_degrees: 0.0,
+            roll_degrees: 0.0,
+            r#move: Move::default(),
+            height: None,
+            width: None,
+        }
+    }
+}
+
+impl Orthographic {
+    fn pose(&self) -> Pose {
+        Pose {
+            eye: self.eye,
+            look_at: self.look_at,
+            direction: self.direction,
+            up: self.up,
+            yaw_degrees: self.yaw_degrees,
+            pitch_degrees: self.pitch_degrees,
+            roll_degrees: self.roll_degrees,
+            r#move: self.r#move,
+        }
+    }
+
+    fn half_extent(&self, size: UVec2) -> Result<Vec2, InvalidCamera> {
+        positive([("width", self.width.unwrap_or(1.0)), ("height", self.height.unwrap_or(1.0))])?;
+        let size = size.max(UVec2::ONE).as_vec2();
+        let extent = match (self.width, self.height) {
+            (Some(width), Some(height)) => Vec2::new(width, height),
+            (Some(width), None) => Vec2::new(width, width * size.y / size.x),
+            (None, height) => Vec2::new(size.x / size.y, 1.0) * height.unwrap_or(DEFAULT_HEIGHT),
+        };
+        if !(extent.min_element() > 0.0 && extent.is_finite()) {
+            return Err(InvalidCamera::new("width", format!("the camera shows {extent}, which is no area to show")));
+        }
+        Ok(extent * 0.5)
+    }
+}
+
+impl Camera for Orthographic {
+    fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
+        let half = self.half_extent(size)?;
+        Ok(Projection::parallel(&self.pose().axes()?, half, size))
+    }
+
+    fn axes(&self) -> Result<Axes, InvalidCamera> {
+        self.pose().axes()
+    }
+
+    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+        (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
+        (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
+        self.r#move = Move::default();
+    }
+
+    fn target(&self) -> Option<Vec3> {
+        self.look_at
+    }
+
+    fn upward(&self) -> Vec3 {
+        self.up
+    }
+
+    fn zoom(&mut self, factor: f32) {
+        let zoomed = |length: f32| (length / factor).clamp(f32::MIN_POSITIVE, 1e30);
+        if self.width.is_none() {
+            self.height = Some(self.height.unwrap_or(DEFAULT_HEIGHT));
+        }
+        (self.width, self.height) = (self.width.map(zoomed), self.height.map(zoomed));
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Orthographic {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let above = Self { eye: Vec3::new(0.0, 9.0, 0.0), width: Some(3.0), ..Self::default() };
+        vec![Self::default(), above]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::close3;
+
+    #[test]
+    fn film_edges_stand_where_width_and_height_say() {
+        for (json, half) in [
+            (r#"{"height": 3}"#, Vec2::new(2.0, 1.5)),
+            (r#"{"width": 8}"#, Vec2::new(4.0, 3.0)),
+            (r#"{"width": 8, "height": 2}"#, Vec2::new(4.0, 1.0)),
+            (r#"{}"#, Vec2::new(8.0 / 3.0, 2.0)),
+        ] {
+            let camera: Orthographic = serde_json::from_str(json).unwrap();
+            let projection = camera.project(UVec2::new(400, 300)).unwrap();
+            let corner = projection.ray(Vec2::ZERO, Vec2::ZERO, 0.0);
+            assert!(close3(corner.origin, Vec3::new(-half.x, half.y, 5.0), 1e-6), "{json} {corner:?}");
+            assert_eq!(corner.direction, -Vec3::Z);
+            let opposite = projection.ray(Vec2::new(400.0, 300.0), Vec2::ZERO, 0.0);
+            assert!(close3(opposite.origin, Vec3::new(half.x, -half.y, 5.0), 1e-6), "{json} {opposite:?}");
+        }
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        for (json, field) in [(r#"{"height": 0}"#, "height"), (r#"{"width": -2}"#, "width")] {
+            let camera: Orthographic = serde_json::from_str(json).unwrap();
+            assert_eq!(camera.project(UVec2::new(4, 3)).unwrap_err().field, field);
+        }
+    }
+}

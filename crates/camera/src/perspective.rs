@@ -1,0 +1,155 @@
+//! A pinhole camera.
+//!
+//! ```json
+//! {"perspective": {"eye": [0, 2, 6], "look_at": [0, 1, 0], "vertical_fov_degrees": 40}}
+//! ```
+//!
+//! The Juggler's virtual screen: `"screen": {"width": 100, "distance": 50}`. The teaching engine's:
+//! `"view_plane": {"width": 500, "height": 500, "distance": 660}`. ScalaBlitz's zoom angle is the vertical
+//! field of view, for tan(π α / 360) is the tangent of half of α degrees.
+
+use super::field_of_view::{FieldOfView, Screen, ViewPlane};
+use super::pose::{Axes, Move, Pose};
+use super::{Camera, InvalidCamera, Projection};
+use juggler_math::{UVec2, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A pinhole camera: everything is sharp.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Perspective {
+    /// Where it stands, world space.
+    #[schemars(with = "[f32; 3]")]
+    pub eye: Vec3,
+    /// Point that it looks at, world space; the origin when neither this nor `direction` is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<[f32; 3]>")]
+    pub look_at: Option<Vec3>,
+    /// Direction in which it looks, any length; instead of `look_at`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<[f32; 3]>")]
+    pub direction: Option<Vec3>,
+    /// Direction to which the picture's top leans.
+    #[schemars(with = "[f32; 3]")]
+    pub up: Vec3,
+    /// Turns to the right from there.
+    pub yaw_degrees: f32,
+    /// Then tilts upwards.
+    pub pitch_degrees: f32,
+    /// Then leans its top to the right.
+    pub roll_degrees: f32,
+    /// Then steps along its own axes.
+    pub r#move: Move,
+    /// Angle that the picture spans from bottom to top. At most one of `vertical_fov_degrees`,
+    /// `horizontal_fov_degrees`, `screen` and `view_plane` may be given; without any, it is 40.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
+    pub vertical_fov_degrees: Option<f32>,
+    /// Angle that the picture spans from left to right.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
+    pub horizontal_fov_degrees: Option<f32>,
+    /// Field of view as a screen of some width at some distance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub screen: Option<Screen>,
+    /// Field of view as a rectangle at some distance, over which the picture is stretched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view_plane: Option<ViewPlane>,
+}
+
+impl Default for Perspective {
+    fn default() -> Self {
+        Self {
+            eye: Vec3::new(0.0, 0.0, 5.0),
+            look_at: None,
+            direction: None,
+            up: Vec3::Y,
+            yaw_degrees: 0.0,
+            pitch_degrees: 0.0,
+            roll_degrees: 0.0,
+            r#move: Move::default(),
+            vertical_fov_degrees: None,
+            horizontal_fov_degrees: None,
+            screen: None,
+            view_plane: None,
+        }
+    }
+}
+
+impl Perspective {
+    fn pose(&self) -> Pose {
+        Pose {
+            eye: self.eye,
+            look_at: self.look_at,
+            direction: self.direction,
+            up: self.up,
+            yaw_degrees: self.yaw_degrees,
+            pitch_degrees: self.pitch_degrees,
+            roll_degrees: self.roll_degrees,
+            r#move: self.r#move,
+        }
+    }
+
+    fn field_of_view(&self) -> FieldOfView {
+        FieldOfView {
+            vertical_degrees: self.vertical_fov_degrees,
+            horizontal_degrees: self.horizontal_fov_degrees,
+            screen: self.screen,
+            view_plane: self.view_plane,
+        }
+    }
+}
+
+impl Camera for Perspective {
+    fn project(&self, size: UVec2) -> Result<Projection, InvalidCamera> {
+        let half = self.field_of_view().half_extent(size)?;
+        Ok(Projection::pinhole(&self.pose().axes()?, half, size))
+    }
+
+    fn axes(&self) -> Result<Axes, InvalidCamera> {
+        self.pose().axes()
+    }
+
+    fn stand(&mut self, eye: Vec3, direction: Vec3, up: Vec3) {
+        (self.eye, self.look_at, self.direction, self.up) = (eye, None, Some(direction), up);
+        (self.yaw_degrees, self.pitch_degrees, self.roll_degrees) = (0.0, 0.0, 0.0);
+        self.r#move = Move::default();
+    }
+
+    fn target(&self) -> Option<Vec3> {
+        self.look_at
+    }
+
+    fn upward(&self) -> Vec3 {
+        self.up
+    }
+
+    fn zoom(&mut self, factor: f32) {
+        let zoomed = self.field_of_view().zoomed(factor);
+        (self.vertical_fov_degrees, self.horizontal_fov_degrees) = (zoomed.vertical_degrees, zoomed.horizontal_degrees);
+        (self.screen, self.view_plane) = (zoomed.screen, zoomed.view_plane);
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Perspective {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let juggler = Self {
+            eye: Vec3::new(2.0, 100.0, -2.0),
+            look_at: Some(Vec3::new(1000.0, 77.0, -1000.0)),
+            screen: Some(Screen { width: 100.0, distance: 50.0 }),
+            ..Self::default()
+        };
+        let chess = Self {
+            eye: Vec3::new(-500.0, 100.0, 400.0),
+            direction: Some(Vec3::new(5.0, -1.0, 0.0)),
+            up: Vec3::Z,
+            pitch_degrees: -40.0,
+            view_plane: Some(ViewPlane { width: 500.0, height: 500.0, distance: 660.0 }),
+            ..Self::default()
+        };
+        vec![Self::default(), juggler, chess]
+    }
+}

@@ -1,0 +1,189 @@
+//! Sobol points whose error is spread over the picture as blue noise (Ahmed and Wonka, Screen-Space Blue-Noise Diffusion
+//! of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels, 2020): one pixel errs to one side, its neighbours
+//! to the other.
+//!
+//! All pixels of a block share one scrambled sequence. Along a Z-shaped curve through the block, each pixel takes as many
+//! of its points as the picture has samples; so neighbours' points together are as well spread as a pixel's own. At each
+//! level of the curve the four quarters change places at random, anew in each dimension.
+//!
+//! Other than in the paper blocks end at 256 × 256 pixels, so that 32 bits number their points, and samples are shuffled
+//! within a pixel by the same hash as in `sobol`. More samples than were planned are further points of the
+//! sequence: as good for the pixel, but no longer in step with its neighbours.
+//!
+//! ```json
+//! {"blue_noise": {}}
+//! ```
+
+use super::{Pattern, Spread, sobol};
+use juggler_math::{UVec2, Vec2, hash};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Sobol points whose error is spread over the picture as blue noise, which the eye forgives: for pictures of few samples.
+/// Best at powers of two.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct BlueNoise {}
+
+/// Levels of the curve: a block is 2^8 pixels wide and high.
+const LEVELS: u32 = 8;
+/// Edge of a block in pixels.
+pub const BLOCK_EDGE: u32 = 1 << LEVELS;
+/// Bits of a pixel's place in its block.
+const PLACE_BITS: u32 = 2 * LEVELS;
+/// Most bits of a sample's number in its pixel; with those of the place, they fit in a point's.
+const MAX_BITS: u32 = 32 - PLACE_BITS;
+
+impl Spread for BlueNoise {
+    fn pattern(&self, samples: u32) -> Pattern {
+        let bits = u32::BITS - samples.saturating_sub(1).leading_zeros();
+        Pattern::BlueNoise { bits: bits.min(MAX_BITS) as u8, place: 0 }
+    }
+}
+
+/// Where a pixel comes in its block along the curve: the bits of both coordinates by turns (Morton 1966).
+pub fn place(pixel: UVec2) -> u16 {
+    let spread = |x: u32| (0..LEVELS).fold(0, |bits, level| bits | (x >> level & 1) << (2 * level));
+    (spread(pixel.x) | spread(pixel.y) << 1) as u16
+}
+
+/// Point `index` of the pixel at `place`, of 2^`bits` that were planned, in the dimension `seed`.
+#[inline]
+pub fn point(index: u32, place: u16, bits: u8, seed: u32) -> Vec2 {
+    let bits = u32::from(bits).min(MAX_BITS);
+    let (set, number) = (index >> bits, index & ((1 << bits) - 1));
+    // Sets that a point's number has no bits for are of sequences of their own.
+    let room = MAX_BITS - bits;
+    let (sequence, set) = (set >> room, u64::from(set) << (PLACE_BITS + bits));
+    let seed = if sequence == 0 { seed } else { hash::combine(seed, sequence) };
+    sobol::point(set as u32 | permuted(place.into(), seed) << bits | number, seed)
+}
+
+/// Changes the places of quarters, and of their quarters, down to the pixels: each digit in base 4 by a permutation that
+/// those above it decide.
+#[inline]
+fn permuted(place: u32, seed: u32) -> u32 {
+    (0..LEVELS).fold(0, |result, level| {
+        let shift = 2 * level;
+        // The digits above, with a one in front that tells the level.
+        let above = (place | 1 << PLACE_BITS) >> (shift + 2);
+        let random = hash::mix(seed ^ above.wrapping_mul(0x9e37_79b9));
+        let permutation = PERMUTATIONS[((u64::from(random) * PERMUTATIONS.len() as u64) >> 32) as usize];
+        let digit = u32::from(permutation) >> (2 * (place >> shift & 3)) & 3;
+        result | digit << shift
+    })
+}
+
+/// All orders of four things, two bits each.
+const PERMUTATIONS: [u8; 24] = {
+    let (mut all, mut count, mut order) = ([0; 24], 0, 0);
+    while order < 256 {
+        let things = [order & 3, order >> 2 & 3, order >> 4 & 3, order >> 6];
+        if 1 << things[0] | 1 << things[1] | 1 << things[2] | 1 << things[3] == 0b1111 {
+            all[count] = order as u8;
+            count += 1;
+        }
+        order += 1;
+    }
+    all
+};
+
+#[cfg(any(test, feature = "testing"))]
+impl BlueNoise {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self {}]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampler::Sampler;
+
+    #[test]
+    fn permutations_are_all_there_are() {
+        let mut known: Vec<[u8; 4]> = PERMUTATIONS.iter().map(|p| [0, 2, 4, 6].map(|shift| p >> shift & 3)).collect();
+        known.iter().for_each(|order| {
+            let mut sorted = *order;
+            sorted.sort_unstable();
+            assert_eq!(sorted, [0, 1, 2, 3]);
+        });
+        known.dedup();
+        assert_eq!(known.len(), 24);
+    }
+
+    #[test]
+    fn places_are_permuted_within_their_quarters() {
+        for seed in [0, 1, 0x1234_5678] {
+            let mut seen = vec![false; 1 << PLACE_BITS];
+            for place in 0..1 << PLACE_BITS {
+                let to = permuted(place, seed);
+                assert!(!std::mem::replace(&mut seen[to as usize], true));
+                for shift in [2, 6, 10, 14] {
+                    // Those that lay in one quarter of any level still do.
+                    assert_eq!(to >> shift, permuted(place >> shift << shift, seed) >> shift);
+                }
+            }
+        }
+        assert_eq!(place(UVec2::new(3, 0)), 5);
+        assert_eq!(place(UVec2::new(0, 3)), 10);
+        assert_eq!(place(UVec2::new(255, 255)), u16::MAX);
+    }
+
+    #[test]
+    fn quarters_go_to_every_place_equally_often() {
+        let mut counts = [0u32; 16];
+        for seed in 0..8000 {
+            let seed = hash::mix(seed);
+            (0..4).for_each(|quarter| counts[(quarter * 4 + (permuted(quarter << 14, seed) >> 14)) as usize] += 1);
+        }
+        juggler_math::testing::chi_squared(&counts.map(f64::from), &[2000.0; 16], 1e-3).unwrap();
+    }
+
+    /// The points of all samples of some pixels.
+    fn points(x: u32, y: u32, edge: u32, samples: u32) -> Vec<Vec2> {
+        let picture = Sampler::new(BlueNoise {}.pattern(samples), 3);
+        let pixels = (0..edge * edge).map(|i| UVec2::new(x + i % edge, y + i / edge));
+        pixels.flat_map(|pixel| (0..samples).map(move |i| picture.pixel(pixel).sample(i).at(4).next_2d())).collect()
+    }
+
+    #[test]
+    fn points_of_a_block_of_pixels_fill_every_elementary_interval_once() {
+        for (x, y, edge, samples) in [(12, 8, 1, 64), (6, 2, 2, 16), (4, 0, 4, 16), (8, 256, 8, 1), (0, 300, 4, 2)] {
+            let (points, bits) = (points(x, y, edge, samples), (edge * edge * samples).ilog2());
+            for columns in 0..=bits {
+                let mut counts = vec![0; points.len()];
+                let rows = bits - columns;
+                for Vec2 { x, y } in &points {
+                    let (column, row) = ((x * (1 << columns) as f32) as usize, (y * (1 << rows) as f32) as usize);
+                    counts[column << rows | row] += 1;
+                }
+                assert!(
+                    counts.iter().all(|count| *count == 1),
+                    "{edge} pixels, {samples} samples, 2^{columns} columns"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn more_samples_than_planned_are_further_points() {
+        let mut all: Vec<[u32; 2]> = Vec::new();
+        for planned in [1, 3, 16, 1 << 16, u32::MAX] {
+            let pixel = Sampler::new(BlueNoise {}.pattern(planned), 9).pixel(UVec2::new(77, 5000));
+            for index in (0..40).chain([65_535, 65_536, 1 << 20, 1 << 31, u32::MAX]) {
+                let point = pixel.sample(index).next_2d();
+                assert!(point.cmpge(Vec2::ZERO).all() && point.cmplt(Vec2::ONE).all());
+                all.push(point.to_array().map(f32::to_bits));
+            }
+            let last: std::collections::HashSet<_> = all.drain(..).collect();
+            assert_eq!(last.len(), 45, "{planned} planned");
+        }
+    }
+
+    #[test]
+    fn the_pixel_costs_no_room() {
+        assert_eq!(size_of::<Sampler>(), 20);
+    }
+}

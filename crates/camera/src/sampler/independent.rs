@@ -1,0 +1,36 @@
+//! Independent random numbers: the plain Monte Carlo that the others are measured against.
+//!
+//! ```json
+//! {"independent": {}}
+//! ```
+
+use super::{Pattern, Spread};
+use juggler_math::{Vec2, hash};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Independent random numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Independent {}
+
+impl Spread for Independent {
+    fn pattern(&self, _samples: u32) -> Pattern {
+        Pattern::Independent
+    }
+}
+
+/// Point `index` of the stream `seed`.
+#[inline]
+pub fn point(index: u32, seed: u32) -> Vec2 {
+    let x = hash::mix(seed.wrapping_add(index.wrapping_mul(0x9e37_79b9)));
+    Vec2::new(hash::unit_f32(x), hash::unit_f32(hash::mix(x ^ 0x68bc_21eb)))
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Independent {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self {}]
+    }
+}

@@ -1,0 +1,57 @@
+//! Light that is everywhere, from nowhere.
+//!
+//! ```json
+//! {"ambient": {"color": [1, 1, 1], "intensity": 0.1}}
+//! ```
+
+use super::{InvalidLight, Light, LightSample, check_color};
+use juggler_math::{Rgb, Vec2, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Light that is everywhere, from nowhere; each material says how much of it it takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Ambient {
+    /// Its colour.
+    pub color: Rgb,
+    /// Factor on the colour.
+    #[schemars(range(min = 0, max = 1e30))]
+    pub intensity: f32,
+}
+
+impl Default for Ambient {
+    fn default() -> Self {
+        Self { color: Rgb::WHITE, intensity: 0.1 }
+    }
+}
+
+impl Light for Ambient {
+    fn check(&self) -> Result<(), InvalidLight> {
+        check_color(self.color, self.intensity)
+    }
+
+    fn sample(&self, _from: Vec3, _u: Vec2) -> Option<LightSample> {
+        None
+    }
+
+    fn ambient(&self) -> Rgb {
+        self.color * self.intensity
+    }
+
+    fn is_point(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _world_radius: f32) -> f32 {
+        0.0
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Ambient {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default()]
+    }
+}

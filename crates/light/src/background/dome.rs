@@ -1,0 +1,115 @@
+//! The inside of a huge sphere around the origin, coloured by height: the sky of the Juggler's article.
+//!
+//! ```json
+//! {"dome": {"radius": 1e6, "bottom": "#bdbdff", "top": "#2223f6"}}
+//! ```
+//!
+//! The colour is bottom + (top − bottom) · y / radius where the ray meets the sphere; below y = 0 it stays.
+//! A ray that starts outside sees the far side; one that misses sees as high as it comes nearest.
+
+use super::bands::{Bands, Half};
+use super::{Background, BackgroundSample, InvalidBackground, check_color};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The inside of a huge sphere around the origin, coloured by height.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Dome {
+    /// Radius of the sphere, scene units.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: f32,
+    /// Colour at height 0 and below.
+    pub bottom: Rgb,
+    /// Colour at the top.
+    pub top: Rgb,
+}
+
+impl Default for Dome {
+    fn default() -> Self {
+        Self { radius: 1e6, bottom: Rgb::new(0.5, 0.5, 1.0), top: Rgb::new(0.015, 0.015, 0.9) }
+    }
+}
+
+impl Dome {
+    /// The sky as the origin sees it, where heights are those of directions.
+    fn bands(&self) -> Bands {
+        let half = |end: Rgb| Half { base: self.bottom, end, squared: false };
+        Bands { axis: Vec3::Y, upper: half(self.top), lower: half(self.bottom) }
+    }
+}
+
+impl Background for Dome {
+    fn check(&self) -> Result<(), InvalidBackground> {
+        check_color("bottom", self.bottom)?;
+        check_color("top", self.top)?;
+        if self.radius > 0.0 && self.radius.is_finite() {
+            return Ok(());
+        }
+        Err(InvalidBackground { field: "radius", message: format!("`radius` must be above 0, it is {}", self.radius) })
+    }
+
+    fn radiance(&self, ray: &Ray) -> Rgb {
+        // In units of the radius: |origin + t direction|² = 1, larger root.
+        let origin = ray.origin / self.radius;
+        let along = origin.dot(ray.direction);
+        let discriminant = (along * along + 1.0 - origin.length_squared()).max(0.0);
+        let height = origin.y + ray.direction.y * (discriminant.sqrt() - along);
+        // Written so that NaN, from origins without measure, is 0.
+        self.bottom.lerp(self.top, if height > 0.0 { height.min(1.0) } else { 0.0 })
+    }
+
+    fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        self.bands().sample(u)
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        self.bands().pdf(direction)
+    }
+
+    fn mean(&self) -> Rgb {
+        self.bands().mean()
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Dome {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { radius: 3.0, ..Self::default() }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::{Random, close};
+
+    #[test]
+    fn colour_is_that_of_the_point_on_the_sphere() {
+        let dome = Dome { radius: 3.0, bottom: Rgb::BLACK, top: Rgb::WHITE };
+        let mut random = Random::new(101);
+        for _ in 0..2000 {
+            let ray = random.ray(1.7);
+            let height = dome.radiance(&ray).r * 3.0;
+            // Walk to the sphere by bisection.
+            let (mut inside, mut outside) = (0.0f32, 10.0f32);
+            for _ in 0..40 {
+                let middle = (inside + outside) * 0.5;
+                if ray.at(middle).length() < 3.0 { inside = middle } else { outside = middle }
+            }
+            assert!(close(height, ray.at(inside).y.max(0.0), 1e-5), "{ray:?}");
+        }
+    }
+
+    #[test]
+    fn far_domes_look_the_same_from_everywhere_near() {
+        let dome = Dome { bottom: Rgb::BLACK, top: Rgb::WHITE, ..Dome::default() };
+        let direction = Vec3::new(0.6, 0.8, 0.0);
+        let near = dome.radiance(&Ray::new(Vec3::new(2.0, 100.0, -2.0), direction)).r;
+        assert!((near - 0.8).abs() < 2e-4, "{near}");
+        assert_eq!(dome.radiance(&Ray::new(Vec3::ZERO, Vec3::NEG_Y)), Rgb::BLACK);
+        assert_eq!(dome.radiance(&Ray::new(Vec3::ZERO, Vec3::Y)), Rgb::WHITE);
+    }
+}

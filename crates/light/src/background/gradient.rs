@@ -1,0 +1,140 @@
+//! A sky that changes with the elevation: one colour at the horizon, another at the zenith.
+//!
+//! ```json
+//! {"gradient": {"horizon": [0.7, 0.7, 1], "zenith": [0.1, 0.1, 1], "blend": "sine_squared"}}
+//! ```
+//!
+//! That is the sky of Eric Graham's Juggler (1986), which looks the same below the horizon as above.
+
+use super::bands::{Bands, Half};
+use super::{Background, BackgroundSample, InvalidBackground, check_color};
+use juggler_math::{Ray, Rgb, Vec2, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A sky that changes with the elevation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Gradient {
+    /// Colour at the horizon.
+    pub horizon: Rgb,
+    /// Colour straight up.
+    pub zenith: Rgb,
+    /// Colour straight down; without it the lower half mirrors the upper one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nadir: Option<Rgb>,
+    /// The direction of the zenith, any length.
+    #[schemars(with = "[f32; 3]")]
+    pub axis: Vec3,
+    /// How colours run into each other.
+    pub blend: Blend,
+}
+
+/// How colours run into each other between the horizon and the zenith.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Blend {
+    /// With the sine of the elevation, the height of a unit direction.
+    #[default]
+    Sine,
+    /// With its square: a wider horizon.
+    SineSquared,
+}
+
+impl Default for Gradient {
+    fn default() -> Self {
+        Self {
+            horizon: Rgb::new(0.75, 0.85, 1.0),
+            zenith: Rgb::new(0.25, 0.45, 1.0),
+            nadir: None,
+            axis: Vec3::Y,
+            blend: Blend::Sine,
+        }
+    }
+}
+
+impl Gradient {
+    fn bands(&self) -> Bands {
+        let half = |end: Rgb| Half { base: self.horizon, end, squared: self.blend == Blend::SineSquared };
+        let axis = self.axis.normalize_or(Vec3::Y);
+        Bands { axis, upper: half(self.zenith), lower: half(self.nadir.unwrap_or(self.zenith)) }
+    }
+}
+
+impl Background for Gradient {
+    fn check(&self) -> Result<(), InvalidBackground> {
+        check_color("horizon", self.horizon)?;
+        check_color("zenith", self.zenith)?;
+        check_color("nadir", self.nadir.unwrap_or_default())?;
+        let squared = self.axis.length_squared();
+        if squared >= f32::MIN_POSITIVE && squared.is_finite() {
+            return Ok(());
+        }
+        let message = format!("`axis` must have a length, neither zero nor without end; it is {}", self.axis);
+        Err(InvalidBackground { field: "axis", message })
+    }
+
+    fn radiance(&self, ray: &Ray) -> Rgb {
+        let sine = (ray.direction.dot(self.axis) / self.axis.length()).clamp(-1.0, 1.0);
+        let end = if sine < 0.0 { self.nadir.unwrap_or(self.zenith) } else { self.zenith };
+        let share = match self.blend {
+            Blend::Sine => sine.abs(),
+            Blend::SineSquared => sine * sine,
+        };
+        self.horizon.lerp(end, share)
+    }
+
+    fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        self.bands().sample(u)
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        self.bands().pdf(direction)
+    }
+
+    fn mean(&self) -> Rgb {
+        self.bands().mean()
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Gradient {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let below = Self { nadir: Some(Rgb::splat(0.1)), axis: Vec3::Z * 3.0, ..Self::default() };
+        vec![Self::default(), below, Self { blend: Blend::SineSquared, ..Self::default() }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(json: &str, direction: Vec3) -> Rgb {
+        let sky: Gradient = serde_json::from_str(json).unwrap();
+        sky.radiance(&Ray::new(Vec3::new(5.0, 6.0, 7.0), direction))
+    }
+
+    fn near(a: Rgb, b: [f32; 3]) -> bool {
+        (Vec3::from(a.to_array()) - Vec3::from(b)).abs().max_element() < 1e-6
+    }
+
+    #[test]
+    fn colours_follow_the_elevation() {
+        let json = |more: &str| format!(r#"{{"horizon": [1, 0, 0], "zenith": [0, 1, 0], "axis": [0, 0, 2]{more}}}"#);
+        let (plain, lower) = (json(""), json(r#", "nadir": [0, 0, 1]"#));
+        assert!(near(at(&plain, Vec3::X), [1.0, 0.0, 0.0]) && near(at(&plain, Vec3::Z), [0.0, 1.0, 0.0]));
+        assert!(near(at(&plain, Vec3::new(0.8, 0.0, 0.6)), [0.4, 0.6, 0.0]));
+        assert!(near(at(&plain, Vec3::new(0.8, 0.0, -0.6)), [0.4, 0.6, 0.0]));
+        assert!(near(at(&lower, Vec3::new(0.0, 0.8, -0.6)), [0.4, 0.0, 0.6]));
+    }
+
+    #[test]
+    fn grahams_sky_goes_by_the_square() {
+        let json = r#"{"horizon": [0.7, 0.7, 1], "zenith": [0.1, 0.1, 1], "blend": "sine_squared"}"#;
+        for (y, red) in [(0.0f32, 0.7), (0.5, 0.55), (-0.5, 0.55), (1.0, 0.1)] {
+            let direction = Vec3::new((1.0 - y * y).sqrt(), y, 0.0);
+            assert!(near(at(json, direction), [red, red, 1.0]), "{y}");
+        }
+    }
+}

@@ -1,0 +1,366 @@
+//! The sky of a clear day, or of its beginning and end, with the sun.
+//!
+//! ```json
+//! {"sky": {"sun_elevation_degrees": 35, "sun_azimuth_degrees": 135, "turbidity": 2, "ground_albedo": [0.3, 0.3, 0.3],
+//!     "intensity": 1, "sun": true, "up": [0, 1, 0]}}
+//! ```
+//!
+//! Light of the sun is followed through the atmosphere (`atmosphere.rs`). With an intensity of 1, white paper that
+//! faces the sun above the atmosphere has the radiance 1; on the ground it is a little less, and a blue sky is about a
+//! tenth of it. The sun is a disk of its true size, without the darkening of its limb. Below the horizon lies flat
+//! ground in the light of sun and sky.
+//!
+//! The sun is picked as a cone, the rest by a table; densities of both add up.
+
+use super::atmosphere::{Atmosphere, GROUND, haze_phase};
+use super::directions::{Directions, direction};
+use super::orientation::{Orientation, check_direction, in_range};
+use super::{Background, BackgroundSample, InvalidBackground};
+use juggler_math::{DVec3, Frame, MAX_LIGHT, Ray, Rgb, Vec2, Vec3, fun, warp};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt;
+use std::sync::Arc;
+
+/// Angular radius of the sun as seen from the earth.
+const SUN_DEGREES: f32 = 0.2665;
+
+/// Lines of the table of colours: elevations, denser towards the horizon, by turns away from the sun.
+const ELEVATIONS: usize = 40;
+const TURNS: usize = 25;
+
+/// Cells of the table that directions are picked from: rows and columns, 2 by 2 places in each.
+const CELLS: usize = 96;
+
+/// The sky of a clear day, or of its beginning and end, with the sun.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Sky {
+    /// Height of the sun above the horizon; below it is twilight.
+    #[schemars(range(min = -90, max = 90))]
+    pub sun_elevation_degrees: f32,
+    /// Where the sun stands, as on a compass: 0 at -Z, 90 at +X.
+    pub sun_azimuth_degrees: f32,
+    /// Towards the sun, any length, in the sky's own space where +Y is up; instead of both angles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<[f32; 3]>")]
+    pub sun_direction: Option<Vec3>,
+    /// How hazy the air is: 1 without any haze, 2 on a clear day, 10 in thick haze.
+    #[schemars(range(min = 1, max = 10))]
+    pub turbidity: f32,
+    /// Share of light that the ground reflects, from 0 to 1 in every channel; it also lights the sky.
+    pub ground_albedo: Rgb,
+    /// Factor on all light.
+    #[schemars(range(min = 0, max = 1e30))]
+    pub intensity: f32,
+    /// Whether the sun itself is there: its disk and its direct light.
+    pub sun: bool,
+    /// Where its top points, any length.
+    #[schemars(with = "[f32; 3]")]
+    pub up: Vec3,
+    /// What [`Background::prepare`] computes: clones share it. Not part of the description.
+    #[serde(skip)]
+    pub prepared: PreparedSky,
+}
+
+/// What [`Background::prepare`] computes for a [`Sky`]; nothing before.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PreparedSky(Option<Arc<Tables>>);
+
+impl Default for Sky {
+    fn default() -> Self {
+        Self {
+            sun_elevation_degrees: 35.0,
+            sun_azimuth_degrees: 135.0,
+            sun_direction: None,
+            turbidity: 2.0,
+            ground_albedo: Rgb::splat(0.3),
+            intensity: 1.0,
+            sun: true,
+            up: Vec3::Y,
+            prepared: PreparedSky::default(),
+        }
+    }
+}
+
+/// Everything in the sky's own space.
+#[derive(Clone, PartialEq)]
+struct Tables {
+    orientation: Orientation,
+    /// Unit direction to the sun's centre.
+    sun: Vec3,
+    /// Radiance of its disk; black when it is not there.
+    disk: Rgb,
+    /// Radiance of the ground.
+    ground: Rgb,
+    /// Light scattered by air or often, and once by haze without its phase: rows of elevation.
+    smooth: Vec<Rgb>,
+    haze: Vec<Rgb>,
+    directions: Directions,
+    /// Chance that the sun is picked.
+    sun_chance: f32,
+    mean: Rgb,
+}
+
+impl fmt::Debug for Tables {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Tables").field("sun", &self.sun).field("mean", &self.mean).finish_non_exhaustive()
+    }
+}
+
+/// 1 - cos of the sun's angular radius.
+fn sun_size() -> f32 {
+    warp::cone_size(SUN_DEGREES.to_radians())
+}
+
+impl Sky {
+    /// Unit direction to the sun in the sky's own space.
+    fn sun(&self) -> Vec3 {
+        if let Some(towards) = self.sun_direction {
+            return towards.normalize_or(Vec3::Y);
+        }
+        let (sin, cos) = fun::sin_cos(self.sun_elevation_degrees.to_radians());
+        let (sin_turn, cos_turn) = fun::sin_cos(self.sun_azimuth_degrees.to_radians());
+        Vec3::new(cos * sin_turn, sin, -cos * cos_turn)
+    }
+}
+
+impl Tables {
+    fn new(sky: &Sky) -> Option<Self> {
+        let sun = sky.sun();
+        let [r, g, b] = sky.ground_albedo.to_array().map(f64::from);
+        let air = Atmosphere::new(f64::from(sky.turbidity), DVec3::new(r, g, b));
+        // Irradiance above the atmosphere.
+        let power = f64::from(PI * sky.intensity);
+        let (smooth, haze) = colors(&air, sun, power);
+        let risen = sky.sun && sun.y > -fun::sin(SUN_DEGREES.to_radians());
+        let disk = air.clear_to_top(GROUND, f64::from(sun.y.max(0.0))) * power / f64::from(TAU * sun_size());
+        let directions = Directions::new(1, vec![1.0, -1.0], &[0.0])?;
+        let mut tables = Self {
+            orientation: Orientation::new(sky.up, 0.0),
+            sun,
+            disk: if risen { rgb(disk) } else { Rgb::BLACK },
+            ground: Rgb::BLACK,
+            smooth,
+            haze,
+            directions,
+            sun_chance: 0.0,
+            mean: Rgb::BLACK,
+        };
+        let direct = rgb(air.sunlight(GROUND, f64::from(sun.y)) * power) * sun.y.max(0.0);
+        tables.fill(if sky.sun { direct } else { Rgb::BLACK }, sky.ground_albedo)?;
+        Some(tables)
+    }
+
+    /// Lights the ground, and derives what directions are picked from.
+    fn fill(&mut self, direct: Rgb, albedo: Rgb) -> Option<()> {
+        let borders = Directions::equal_heights(CELLS);
+        let places: Vec<Vec3> = (0..4 * CELLS * CELLS).map(|i| place(&borders, i)).collect();
+        // All of the same solid angle.
+        let size = 4.0 * PI / places.len() as f32;
+        let above = || places.iter().filter(|place| place.y > 0.0);
+        let arrives = above().fold(direct, |sum, place| sum + self.scattered(*place) * (place.y * size));
+        self.ground = albedo * arrives / PI;
+        let colors: Vec<Rgb> = places.iter().map(|place| self.scattered(*place)).collect();
+        let brightness: Vec<f32> =
+            colors.chunks_exact(4).map(|cell| cell.iter().map(|color| color.luminance()).sum::<f32>() * 0.25).collect();
+        self.directions = Directions::new(CELLS, borders, &brightness)?;
+        let around = colors.iter().fold(Rgb::BLACK, |sum, color| sum + *color) * size;
+        let sun = self.disk * (TAU * sun_size() * self.risen());
+        self.mean = (around + sun) / (4.0 * PI);
+        let total = (around + sun).luminance();
+        self.sun_chance = if total > 0.0 { sun.luminance() / total } else { 0.0 };
+        Some(())
+    }
+
+    /// The part of the sun's disk that is above the horizon.
+    fn risen(&self) -> f32 {
+        let x = (self.sun.y / fun::sin(SUN_DEGREES.to_radians())).clamp(-1.0, 1.0);
+        (fun::acos(-x) + x * (1.0 - x * x).sqrt()) / PI
+    }
+
+    /// Light of air and ground.
+    fn scattered(&self, direction: Vec3) -> Rgb {
+        if direction.y < 0.0 {
+            return self.ground;
+        }
+        let row = (fun::asin(direction.y) / FRAC_PI_2).sqrt() * (ELEVATIONS - 1) as f32;
+        let across = direction.x * self.sun.z - direction.z * self.sun.x;
+        let along = direction.x * self.sun.x + direction.z * self.sun.z;
+        let column = fun::atan2(across.abs(), along) / PI * (TURNS - 1) as f32;
+        let (top, left) = ((row as usize).min(ELEVATIONS - 2), (column as usize).min(TURNS - 2));
+        let (down, right) = (row - top as f32, column - left as f32);
+        let look_up = |table: &[Rgb]| {
+            let at = |row: usize, column: usize| table.get(row * TURNS + column).copied().unwrap_or_default();
+            let line = |row: usize| at(row, left).lerp(at(row, left + 1), right);
+            line(top).lerp(line(top + 1), down)
+        };
+        look_up(&self.smooth) + look_up(&self.haze) * haze_phase(direction.dot(self.sun))
+    }
+
+    /// Whether a direction leads to the sun's disk, by the chord, which keeps its digits where cosines lose them.
+    fn in_sun(&self, direction: Vec3) -> bool {
+        (direction - self.sun).length_squared() <= 2.0 * sun_size()
+    }
+
+    fn radiance(&self, direction: Vec3) -> Rgb {
+        let scattered = self.scattered(direction);
+        if direction.y >= 0.0 && self.in_sun(direction) { scattered + self.disk } else { scattered }
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        let sun = if self.in_sun(direction) { warp::uniform_cone_pdf(sun_size()) } else { 0.0 };
+        self.sun_chance * sun + (1.0 - self.sun_chance) * self.directions.pdf(direction)
+    }
+}
+
+fn rgb(v: DVec3) -> Rgb {
+    Rgb::new(v.x as f32, v.y as f32, v.z as f32)
+}
+
+/// The colours of the sky on the lines of its table.
+fn colors(air: &Atmosphere, sun: Vec3, power: f64) -> (Vec<Rgb>, Vec<Rgb>) {
+    let sun = sun.as_dvec3();
+    let aside = DVec3::new(sun.x, 0.0, sun.z).normalize_or(DVec3::X);
+    let across = DVec3::new(-aside.z, 0.0, aside.x);
+    let color = |i: usize| {
+        let share = (i / TURNS) as f64 / (ELEVATIONS - 1) as f64;
+        let (sin, cos) = fun::sin_cos_f64(share * share * f64::from(FRAC_PI_2));
+        let turn = (i % TURNS) as f64 / (TURNS - 1) as f64 * std::f64::consts::PI;
+        let (sin_turn, cos_turn) = fun::sin_cos_f64(turn);
+        let light = air.sky((aside * cos_turn + across * sin_turn) * cos + DVec3::Y * sin, sun);
+        (rgb(light.smooth * power), rgb(light.haze * power))
+    };
+    (0..ELEVATIONS * TURNS).map(color).unzip()
+}
+
+/// One of the four places in each cell of the table that directions are picked from.
+fn place(borders: &[f64], i: usize) -> Vec3 {
+    let (cell, corner) = (i / 4, i % 4);
+    let row = (cell / CELLS) as f64 + 0.25 + 0.5 * (corner / 2) as f64;
+    let column = (cell % CELLS) as f32 + 0.25 + 0.5 * (corner % 2) as f32;
+    direction(column / CELLS as f32, Directions::row_height(borders, row))
+}
+
+impl Background for Sky {
+    fn check(&self) -> Result<(), InvalidBackground> {
+        in_range("sun_elevation_degrees", self.sun_elevation_degrees, -90.0, 90.0)?;
+        in_range("sun_azimuth_degrees", self.sun_azimuth_degrees, -1e4, 1e4)?;
+        in_range("turbidity", self.turbidity, 1.0, 10.0)?;
+        self.ground_albedo.to_array().iter().try_for_each(|v| in_range("ground_albedo", *v, 0.0, 1.0))?;
+        in_range("intensity", self.intensity, 0.0, MAX_LIGHT)?;
+        check_direction("sun_direction", self.sun_direction.unwrap_or(Vec3::Y))?;
+        check_direction("up", self.up)
+    }
+
+    fn prepare(&mut self) -> Result<(), InvalidBackground> {
+        self.check()?;
+        self.prepared = PreparedSky(Tables::new(self).map(Arc::new));
+        Ok(())
+    }
+
+    fn radiance(&self, ray: &Ray) -> Rgb {
+        let Some(tables) = &self.prepared.0 else { return Rgb::BLACK };
+        tables.radiance(tables.orientation.to_local(ray.direction))
+    }
+
+    fn sample(&self, u: Vec2) -> Option<BackgroundSample> {
+        let tables = self.prepared.0.as_ref()?;
+        let chance = tables.sun_chance;
+        let local = if u.x < chance {
+            let u = Vec2::new((u.x / chance).min(1f32.next_down()), u.y);
+            Frame::around(tables.sun).to_world(warp::uniform_cone(u, sun_size() * (1.0 - 1e-4)))
+        } else {
+            let u = Vec2::new(((u.x - chance) / (1.0 - chance)).min(1f32.next_down()), u.y);
+            tables.directions.sample(u)?.0
+        };
+        let pdf = tables.pdf(local);
+        let wi = tables.orientation.to_world(local);
+        (pdf > 0.0).then_some(BackgroundSample { wi, pdf })
+    }
+
+    fn pdf(&self, direction: Vec3) -> f32 {
+        self.prepared.0.as_ref().map_or(0.0, |tables| tables.pdf(tables.orientation.to_local(direction)))
+    }
+
+    fn mean(&self) -> Rgb {
+        self.prepared.0.as_ref().map_or(Rgb::BLACK, |tables| tables.mean)
+    }
+
+    fn heap_bytes(&self) -> usize {
+        self.prepared.0.as_ref().map_or(0, |_| {
+            size_of::<Tables>() + 2 * ELEVATIONS * TURNS * size_of::<Rgb>() + 2 * CELLS * CELLS * size_of::<f32>()
+        })
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+#[allow(clippy::unwrap_used, reason = "examples for tests")]
+impl Sky {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let dusk = Self { sun_elevation_degrees: -4.0, turbidity: 4.0, ..Self::default() };
+        let setting = Self { sun_elevation_degrees: 0.1, up: Vec3::new(0.3, 0.1, 1.0), ..Self::default() };
+        let pale =
+            Self { sun_direction: Some(Vec3::Y * 3.0), sun: false, ground_albedo: Rgb::BLACK, ..Self::default() };
+        let mut all = vec![Self::default(), dusk, setting, pale];
+        all.iter_mut().for_each(|sky| sky.prepare().unwrap());
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sky(elevation: f32, turbidity: f32) -> Sky {
+        let mut sky = Sky { sun_elevation_degrees: elevation, turbidity, ..Sky::default() };
+        sky.prepare().unwrap();
+        sky
+    }
+
+    #[test]
+    fn the_sun_gives_what_the_air_lets_through() {
+        for (elevation, turbidity) in [(90.0, 1.0), (35.0, 2.5), (5.0, 4.0)] {
+            let sky = sky(elevation, turbidity);
+            let tables = sky.prepared.0.as_ref().unwrap();
+            // Radiance times solid angle, over the irradiance above the atmosphere.
+            let through = tables.disk * (TAU * sun_size()) / PI;
+            let air = Atmosphere::new(f64::from(turbidity), DVec3::splat(0.3));
+            let truth = rgb(air.sunlight(GROUND, f64::from(fun::sin(elevation.to_radians()))));
+            for (a, b) in through.to_array().into_iter().zip(truth.to_array()) {
+                assert!((a / b - 1.0).abs() < 1e-3, "{elevation}: {through:?} {truth:?}");
+            }
+            assert!(through.r > through.b && through.r < 1.0);
+        }
+    }
+
+    #[test]
+    fn the_disk_is_where_it_should_be_and_as_large() {
+        let sky = sky(35.0, 2.5);
+        let at = |elevation: f32, azimuth: f32| {
+            let (sin, cos) = fun::sin_cos(elevation.to_radians());
+            let (s, c) = fun::sin_cos(azimuth.to_radians());
+            sky.radiance(&Ray::new(Vec3::ZERO, Vec3::new(cos * s, sin, -cos * c))).g
+        };
+        assert!(at(35.0, 135.0) > 1e4 && at(35.26, 135.0) > 1e4 && at(35.27, 135.0) < 100.0);
+        assert!(at(35.0, 135.32) > 1e4 && at(35.0, 135.33) < 100.0 && at(-35.0, 135.0) < 1.0);
+    }
+
+    #[test]
+    fn skies_look_as_they_should() {
+        let overhead = |sky: &Sky| sky.radiance(&Ray::new(Vec3::ZERO, Vec3::Y));
+        let towards = |y: f32| Vec3::new(0.5, y, -0.5).normalize();
+        let day = sky(35.0, 2.5);
+        let blue = overhead(&day);
+        assert!(blue.b > 1.5 * blue.r && (0.02..0.3).contains(&blue.luminance()), "{blue:?}");
+        let horizon = day.radiance(&Ray::new(Vec3::ZERO, towards(0.01)));
+        assert!(horizon.luminance() > 1.5 * blue.luminance() && horizon.b / horizon.r < blue.b / blue.r);
+        // Red towards the setting sun, dark long after.
+        let glow = sky(0.0, 2.5).radiance(&Ray::new(Vec3::ZERO, Vec3::new(0.7, 0.03, 0.7).normalize()));
+        assert!(glow.r > 1.5 * glow.b, "{glow:?}");
+        assert!(overhead(&sky(-18.0, 2.5)).luminance() < 1e-4 * blue.luminance());
+        assert!(sky(-90.0, 2.5).sample(Vec2::splat(0.5)).is_none());
+    }
+}

@@ -1,0 +1,40 @@
+//! One colour everywhere.
+//!
+//! ```json
+//! {"solid": {"color": [0, 0, 0]}}
+//! ```
+
+use super::{Background, InvalidBackground, check_color};
+use juggler_math::{Ray, Rgb};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One colour everywhere.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Solid {
+    /// The colour.
+    pub color: Rgb,
+}
+
+impl Background for Solid {
+    fn check(&self) -> Result<(), InvalidBackground> {
+        check_color("color", self.color)
+    }
+
+    fn radiance(&self, _ray: &Ray) -> Rgb {
+        self.color
+    }
+
+    fn mean(&self) -> Rgb {
+        self.color
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Solid {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { color: Rgb::new(0.1, 0.2, 3.0) }]
+    }
+}

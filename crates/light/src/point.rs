@@ -1,0 +1,215 @@
+//! A light that shines the same in every direction, from a point or from something with a size.
+//!
+//! ```json
+//! {"point": {"position": [-564, 686, 147], "color": [1, 1, 1], "intensity": 1,
+//!     "attenuation": {"constant": 1}, "extent": {"sphere": {"radius": 10}}, "samples": 1}}
+//! ```
+//!
+//! A light of radiant intensity I (watts per steradian) emits the radiant flux Φ = 4π I, so `power` gives I = Φ / 4π, times
+//! `color` per channel.
+//!
+//! With a photometric file it shines as a luminaire was measured: `"ies": {"file": "lamp.ies"}`.
+
+use super::source::{self, Attenuation, Extent};
+use super::strength::Strength;
+use super::{Ies, InvalidLight, Light, LightSample};
+use crate::emitter::LightBounds;
+use juggler_math::{Rgb, Vec2, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f32::consts::PI;
+
+/// A light that shines the same in every direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Point {
+    /// Where its centre is, world space.
+    #[schemars(with = "[f32; 3]")]
+    pub position: Vec3,
+    /// Its colour.
+    pub color: Rgb,
+    /// Radiant intensity in watts per steradian, a factor on the color: what arrives at distance 1 with the default
+    /// attenuation. 1 without it and without `power`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1e30))]
+    pub intensity: Option<f32>,
+    /// Radiant flux in watts per channel, a factor on the color, instead of `intensity`: the intensity is
+    /// power / 4π. With a photometric file its distribution keeps the same flux.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1e30))]
+    pub power: Option<f32>,
+    /// How its light falls off with distance.
+    pub attenuation: Attenuation,
+    /// A size, for soft shadows; without it shadows are hard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extent: Option<Extent>,
+    /// How many places of the extent are asked per sample of the picture.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub samples: u32,
+    /// A photometric file that says how strongly it shines into each direction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ies: Option<Ies>,
+    /// The group of lights that it is kept apart with in layers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_group: Option<String>,
+}
+
+impl Default for Point {
+    fn default() -> Self {
+        Self {
+            position: Vec3::ZERO,
+            color: Rgb::WHITE,
+            intensity: None,
+            power: None,
+            attenuation: Attenuation::default(),
+            extent: None,
+            samples: 1,
+            ies: None,
+            light_group: None,
+        }
+    }
+}
+
+impl Point {
+    /// Factor on the color.
+    fn intensity(&self) -> f32 {
+        self.power.map_or(self.intensity.unwrap_or(1.0), |power| {
+            let mean = self.mean_share();
+            if mean > 0.0 { power / (4.0 * PI * mean) } else { 0.0 }
+        })
+    }
+
+    /// Mean over all directions of the photometric file's factor.
+    fn mean_share(&self) -> f32 {
+        self.ies.as_ref().map_or(1.0, |ies| source::mean(|leaving| ies.share(leaving, Vec3::NEG_Y)))
+    }
+
+    /// Power without a photometric file.
+    fn reach(&self, world_radius: f32) -> f32 {
+        let at_radius = self.attenuation.at(world_radius) * world_radius * world_radius;
+        4.0 * PI * at_radius * (self.color * self.intensity()).luminance()
+    }
+}
+
+impl Light for Point {
+    fn light_group(&self) -> Option<&str> {
+        self.light_group.as_deref()
+    }
+
+    fn check(&self) -> Result<(), InvalidLight> {
+        let strength = Strength { name: "intensity", value: self.intensity, power: self.power };
+        strength.check(self.color, self.color * self.intensity())?;
+        self.ies.as_ref().map_or(Ok(()), Ies::check)?;
+        source::check(self.position, self.extent, &self.attenuation, self.samples)
+    }
+
+    fn sample(&self, from: Vec3, u: Vec2) -> Option<LightSample> {
+        let arrival = source::reach(self.position, self.extent, &self.attenuation, from, u)?;
+        let mut radiance = self.color * (self.intensity() * arrival.factor);
+        if let Some(ies) = &self.ies {
+            radiance = radiance * ies.share(-arrival.towards_centre, Vec3::NEG_Y);
+        }
+        let arrives = radiance.is_finite() && !radiance.is_black();
+        arrives.then_some(LightSample { wi: arrival.wi, distance: arrival.distance, radiance, pdf: 1.0 })
+    }
+
+    fn shadow_samples(&self) -> u32 {
+        if self.extent.is_some() { self.samples } else { 1 }
+    }
+
+    fn prepare(&mut self) {
+        (self.intensity, self.power) = (Some(self.intensity()), None);
+    }
+
+    fn is_point(&self) -> bool {
+        self.extent.is_none()
+    }
+
+    fn ies(&mut self) -> Option<&mut Ies> {
+        self.ies.as_mut()
+    }
+
+    fn ball(&self) -> Option<(Vec3, f32)> {
+        Some((self.position, self.extent.map_or(0.0, Extent::radius)))
+    }
+
+    fn power(&self, world_radius: f32) -> f32 {
+        self.reach(world_radius) * self.mean_share()
+    }
+
+    fn bounds(&self, world_radius: f32) -> Option<LightBounds> {
+        let power = self.reach(world_radius) * self.ies.as_ref().map_or(1.0, Ies::greatest);
+        Some(source::bounds(self.position, self.extent, power))
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Point {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let juggler = Self {
+            position: Vec3::new(-564.0, 686.0, 147.0),
+            attenuation: Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 },
+            extent: Some(Extent::Sphere { radius: 10.0 }),
+            ..Self::default()
+        };
+        let chess = Self {
+            position: Vec3::new(0.0, 0.0, 300.0),
+            attenuation: Attenuation { constant: 1.0, linear: 8e-5, quadratic: 8e-5 },
+            extent: Some(Extent::Square { side: 15.0 }),
+            color: Rgb::new(1.0, 0.5, 0.25),
+            intensity: Some(3.0),
+            power: None,
+            samples: 16,
+            ies: None,
+            light_group: None,
+        };
+        let measured = Self { ies: Some(super::ies::tests::lamp()), ..Self::default() };
+        let bulb = Self { power: Some(60.0), ..measured.clone() };
+        vec![Self { position: Vec3::new(0.0, 4.0, 0.0), ..Self::default() }, juggler, chess, measured, bulb]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn falls_off_as_stated() {
+        for (attenuation, expected) in [
+            (r#"{"quadratic": 1}"#, [1.0, 0.25, 1e-4]),
+            (r#"{"constant": 1}"#, [1.0, 1.0, 1.0]),
+            (r#"{"constant": 1, "linear": 0.5, "quadratic": 0.25}"#, [4.0 / 7.0, 1.0 / 3.0, 1.0 / 2551.0]),
+            (r#"{"linear": 2}"#, [0.5, 0.25, 0.005]),
+        ] {
+            let json = format!(r#"{{"position": [1, 2, 3], "intensity": 8, "attenuation": {attenuation}}}"#);
+            let light: Point = serde_json::from_str(&json).unwrap();
+            for (distance, expected) in [1.0f32, 2.0, 100.0].into_iter().zip(expected) {
+                let from = Vec3::new(1.0, 2.0 - distance * 0.6, 3.0 + distance * 0.8);
+                let sample = light.sample(from, Vec2::ZERO).unwrap();
+                assert!((sample.radiance.g / (8.0 * expected) - 1.0).abs() < 1e-6, "{json} {distance} {sample:?}");
+                assert!((sample.distance - distance).abs() < 1e-5 * distance && sample.pdf == 1.0);
+                assert!((sample.wi - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn power_is_shared_by_all_directions() {
+        let bulb = Point { power: Some(100.0), color: Rgb::new(1.0, 0.5, 0.0), ..Point::default() };
+        let sample = bulb.sample(Vec3::new(0.0, 0.0, 2.0), Vec2::ZERO).unwrap();
+        let expected = 100.0 / (4.0 * PI) / 4.0;
+        assert!((sample.radiance.r / expected - 1.0).abs() < 1e-6 && sample.radiance.b == 0.0);
+        assert!((sample.radiance.g / sample.radiance.r - 0.5).abs() < 1e-6);
+        let mut ready = bulb.clone();
+        ready.prepare();
+        assert_eq!((ready.power, ready.sample(Vec3::Z, Vec2::ZERO)), (None, bulb.sample(Vec3::Z, Vec2::ZERO)));
+    }
+
+    #[test]
+    fn only_a_size_needs_many_samples() {
+        let many = Point { samples: 16, ..Point::default() };
+        assert_eq!(many.shadow_samples(), 1);
+        assert_eq!(Point { extent: Some(Extent::Sphere { radius: 1.0 }), ..many }.shadow_samples(), 16);
+    }
+}

@@ -1,0 +1,282 @@
+//! Metals.
+//!
+//! ```json
+//! {"conductor": {"metal": "gold", "roughness": 0.3}}
+//! ```
+//!
+//! Or by measured numbers, `eta` and `k`, or by colours, `reflectance` (head on) and `edge_tint`.
+
+use super::error::in_range;
+use super::input::{check_share, share};
+use super::roughness::Roughness;
+use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use juggler_bsdf::metals::Metal;
+use juggler_bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
+use juggler_math::Rgb;
+use juggler_texture::{Input, Lookup, Slot, TextureTable};
+use schemars::{JsonSchema, Schema, json_schema};
+use serde::{Deserialize, Serialize};
+
+/// A metal, polished or rough, the same from both sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Conductor {
+    /// A metal by name, such as `gold`, in place of `eta` and `k` or `reflectance`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub metal: Option<MetalName>,
+    /// Index of refraction per channel, together with `k`, in place of a name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub eta: Option<Rgb>,
+    /// Coefficient of extinction per channel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<Rgb>,
+    /// Colour of a mirror seen head on, where neither a name nor indices are given.
+    pub reflectance: Input<Rgb>,
+    /// Colour that it takes on at 82 degrees, on its way to white at grazing angles: relative to the one that it would
+    /// have there by itself.
+    pub edge_tint: Input<Rgb>,
+    /// Colour at grazing angles in place of white; the same as `reflectance` for a mirror that is the same all round.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grazing: Option<Rgb>,
+    /// 0 for a mirror, 1 for the roughest; the width of GGX is its square.
+    pub roughness: Input<f32>,
+    /// Stretches highlights: 0 for round ones, up to 1 along the surface's u, down to -1 across.
+    pub anisotropy: Input<f32>,
+    /// Turns that direction from u towards v, in whole turns.
+    pub anisotropy_rotation: Input<f32>,
+    /// Gives back what light loses between the grooves of a rough surface: white metal stays white. Off, as most
+    /// renderers have it, rough metal is darker.
+    pub energy_compensation: bool,
+}
+
+/// A metal by name. Its index of refraction per channel is derived from a measured table. Below
+/// stand the table's source and the reflectance at normal incidence: the table's spectral
+/// reflectance in air, integrated to linear sRGB (CIE 1931, D65) and clamped to 0..1. Towards
+/// grazing angles the reflectance follows the integrated spectral curve within 0.01 up to 80
+/// degrees. Gold's red lies outside of sRGB, so it is clamped, and rendered as 0.996.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(transform = with_aluminium)]
+pub enum MetalName {
+    /// Rakić (1995): 0.907, 0.916, 0.922.
+    #[serde(alias = "aluminium")]
+    Aluminum,
+    /// Querry (1985), 70 % copper and 30 % zinc: 0.910, 0.778, 0.423.
+    Brass,
+    /// Johnson and Christy (1974): 0.550, 0.556, 0.554.
+    Chromium,
+    /// Johnson and Christy (1974): 0.683, 0.655, 0.616.
+    Cobalt,
+    /// Johnson and Christy (1972): 0.932, 0.623, 0.522.
+    Copper,
+    /// Johnson and Christy (1972): 1.000, 0.728, 0.365.
+    Gold,
+    /// Johnson and Christy (1974): 0.530, 0.513, 0.494.
+    Iron,
+    /// Johnson and Christy (1974): 0.697, 0.640, 0.563.
+    Nickel,
+    /// Rakić, Djurišić, Elazar and Majewski (1998), Brendel-Bormann model: 0.679, 0.639, 0.584.
+    Platinum,
+    /// Johnson and Christy (1972): 0.989, 0.984, 0.978.
+    Silver,
+    /// Johnson and Christy (1974): 0.619, 0.579, 0.542.
+    Titanium,
+    /// Rakić, Djurišić, Elazar and Majewski (1998), Brendel-Bormann model: 0.506, 0.497, 0.477.
+    Tungsten,
+    /// Werner, Glantschnig and Ambrosch-Draxl (2009): 0.875, 0.869, 0.855.
+    Zinc,
+}
+
+/// Adds the British spelling of aluminum, which serde accepts as an alias, to the schema.
+fn with_aluminium(schema: &mut Schema) {
+    if let Some(names) = schema.get_mut("oneOf").and_then(|names| names.as_array_mut()) {
+        let description = "Another spelling of `aluminum`.";
+        let name = json_schema!({"description": description, "type": "string", "const": "aluminium"});
+        names.push(name.to_value());
+    }
+}
+
+impl Default for Conductor {
+    fn default() -> Self {
+        Self {
+            metal: None,
+            eta: None,
+            k: None,
+            reflectance: Rgb::splat(0.9).into(),
+            edge_tint: Rgb::WHITE.into(),
+            grazing: None,
+            roughness: 0.0.into(),
+            anisotropy: 0.0.into(),
+            anisotropy_rotation: 0.0.into(),
+            energy_compensation: true,
+        }
+    }
+}
+
+/// A [`Conductor`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledConductor {
+    color: Color,
+    /// Of its surface.
+    pub roughness: Roughness,
+    compensated: bool,
+    /// What holds everywhere, where nothing is a texture.
+    fixed: Option<ConductorLobe>,
+}
+
+#[derive(Clone, Debug)]
+enum Color {
+    Measured(Fresnel),
+    Tinted(Slot<Rgb>, Slot<Rgb>),
+    Schlick(Slot<Rgb>, Rgb),
+}
+
+impl Material for Conductor {
+    fn kind(&self) -> &'static str {
+        "conductor"
+    }
+
+    fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
+        check_share("reflectance", &self.reflectance)?;
+        check_share("edge_tint", &self.edge_tint)?;
+        check_share("grazing", &self.grazing.unwrap_or_default().into())?;
+        let textures = resolver.textures();
+        let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
+        let mut compiled = CompiledConductor {
+            color: self.color(textures)?,
+            roughness: Roughness::new(textures, roughness)?,
+            compensated: self.energy_compensation,
+            fixed: None,
+        };
+        if !compiled.is_textured() {
+            compiled.fixed = Some(compiled.at(textures, &Lookup::default()));
+        }
+        Ok(Physical::Conductor(compiled).into())
+    }
+}
+
+impl Conductor {
+    fn color(&self, textures: &TextureTable) -> Result<Color, MaterialError> {
+        if let Some(metal) = self.metal {
+            return Ok(Color::Measured(metal.fresnel()));
+        }
+        match (self.eta, self.k) {
+            (Some(eta), Some(k)) => {
+                eta.to_array().iter().try_for_each(|v| in_range("eta", *v, 1e-3, 1e3))?;
+                k.to_array().iter().try_for_each(|v| in_range("k", *v, 0.0, 1e3))?;
+                Ok(Color::Measured(Fresnel::Complex { eta, k }))
+            }
+            (None, None) => {
+                let head_on = textures.resolve("reflectance", &self.reflectance)?;
+                Ok(match self.grazing {
+                    Some(grazing) => Color::Schlick(head_on, grazing),
+                    None => Color::Tinted(head_on, textures.resolve("edge_tint", &self.edge_tint)?),
+                })
+            }
+            (eta, _) => {
+                let field = if eta.is_some() { "k" } else { "eta" };
+                Err(MaterialError::Invalid { field, message: "`eta` and `k` belong together".into() })
+            }
+        }
+    }
+}
+
+impl CompiledConductor {
+    /// Adds the lobes at a point to `bsdf`.
+    #[inline]
+    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+        match self.fixed {
+            Some(fixed) => bsdf.push(fixed),
+            None => bsdf.push(self.at(textures, &view.lookup())),
+        }
+    }
+
+    fn at(&self, textures: &TextureTable, at: &Lookup) -> ConductorLobe {
+        let fresnel = match &self.color {
+            Color::Measured(fresnel) => *fresnel,
+            Color::Tinted(head_on, edge) => Fresnel::tinted(share(textures, head_on, at), share(textures, edge, at)),
+            Color::Schlick(head_on, f90) => Fresnel::Schlick { f0: share(textures, head_on, at), f90: *f90 },
+        };
+        let alpha = self.roughness.alpha(textures, at);
+        if self.compensated { ConductorLobe::compensated(fresnel, alpha) } else { ConductorLobe::new(fresnel, alpha) }
+    }
+
+    /// Whether it differs from place to place.
+    pub fn is_textured(&self) -> bool {
+        let colors = match &self.color {
+            Color::Measured(_) => false,
+            Color::Tinted(head_on, edge) => head_on.is_texture() || edge.is_texture(),
+            Color::Schlick(head_on, _) => head_on.is_texture(),
+        };
+        colors || self.roughness.is_textured()
+    }
+}
+
+impl MetalName {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Aluminum => "aluminum",
+            Self::Brass => "brass",
+            Self::Chromium => "chromium",
+            Self::Cobalt => "cobalt",
+            Self::Copper => "copper",
+            Self::Gold => "gold",
+            Self::Iron => "iron",
+            Self::Nickel => "nickel",
+            Self::Platinum => "platinum",
+            Self::Silver => "silver",
+            Self::Titanium => "titanium",
+            Self::Tungsten => "tungsten",
+            Self::Zinc => "zinc",
+        }
+    }
+
+    /// Fresnel reflectance of the metal in air.
+    fn fresnel(self) -> Fresnel {
+        Metal::named(self.name()).map_or(Fresnel::WHITE, Metal::fresnel)
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Conductor {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let gold = Self { metal: Some(MetalName::Gold), roughness: 0.4.into(), ..Self::default() };
+        let indices = Self {
+            eta: Some(Rgb::splat(0.2)),
+            k: Some(Rgb::splat(3.0)),
+            energy_compensation: false,
+            roughness: 0.3.into(),
+            ..Self::default()
+        };
+        let brushed = Self { anisotropy: 0.8.into(), roughness: Input::Texture("tiles".into()), ..Self::default() };
+        vec![Self::default(), gold, indices, brushed]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_bsdf::metals::METALS;
+
+    fn parse(name: &str) -> Result<MetalName, serde_json::Error> {
+        serde_json::from_value(name.into())
+    }
+
+    #[test]
+    fn every_metal_has_a_name_in_scenes() {
+        for metal in METALS {
+            let name = parse(metal.name).unwrap();
+            assert_eq!(name.fresnel(), metal.fresnel());
+            assert_eq!(serde_json::to_value(name).unwrap(), metal.name);
+        }
+        assert!(parse("unobtainium").is_err() && parse("Gold").is_err());
+    }
+
+    #[test]
+    fn aluminum_may_be_spelled_aluminium() {
+        let both = ["aluminum", "aluminium"].map(|name| parse(name).unwrap());
+        assert_eq!(both, [MetalName::Aluminum; 2]);
+        assert_eq!(serde_json::to_value(both[1]).unwrap(), "aluminum");
+    }
+}

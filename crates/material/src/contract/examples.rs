@@ -1,0 +1,301 @@
+//! What every material keeps, run over the examples of every kind.
+
+use super::*;
+use juggler_bsdf::Scatter;
+use juggler_math::testing::{Random, close, close3};
+
+/// Every example with the scene's names at hand.
+fn examples() -> Vec<(String, MaterialTable, MaterialId)> {
+    AnyMaterial::examples().into_iter().map(|example| made(&example)).collect()
+}
+
+fn made(material: &AnyMaterial) -> (String, MaterialTable, MaterialId) {
+    let name = serde_json::to_string(material).unwrap();
+    let red = Phong { diffuse: Rgb::new(0.9, 0.1, 0.0).into(), ..Phong::default() };
+    let mut compiler = MaterialCompiler::new(textures(), [("red".to_owned(), red.into())]);
+    let id = compiler.compile(material).unwrap_or_else(|error| panic!("{name}: {} {error}", error.path()));
+    (name, compiler.finish().unwrap(), id)
+}
+
+/// Somewhere, turned anyhow, with a shading normal that leans a little.
+fn place(random: &mut Random) -> (Surface, Tangents) {
+    let normal = random.unit_vector();
+    let shading_normal = (normal + random.point(0.3)).normalize();
+    let uv = Vec2::new(random.range(-3.0, 3.0), random.range(-3.0, 3.0));
+    let surface = Surface { shading_normal, ..Surface::new(random.point(2.0), 0.0, normal, uv) };
+    let (u, v) = (random.unit_vector().reject_from(normal) * 3.0, random.unit_vector().reject_from(normal) * 0.2);
+    (surface, Tangents { u, v, local_u: u * 0.5, local_v: v * 0.5 })
+}
+
+/// The share of light sent in along `wo` that comes out again, by samples, whose values are compared with those asked for.
+fn energy(name: &str, shade: &Shade, wo: Vec3, random: &mut Random) -> Rgb {
+    let count = 16;
+    let mut sum = Rgb::BLACK;
+    for i in 0..count * count {
+        let cell = Vec2::new((i % count) as f32, (i / count) as f32);
+        let u = ((cell + random.vec2()) / count as f32).min(Vec2::splat(1f32.next_down()));
+        let Some(sample) = shade.bsdf.sample(wo, u, random.f32()) else { continue };
+        assert!(sample.weight.to_array().iter().all(|w| *w >= 0.0 && w.is_finite()), "{name}: {sample:?}");
+        assert!(sample.wi.is_normalized() && sample.pdf > 0.0, "{name}: {sample:?}");
+        if sample.scatter != Scatter::Specular {
+            let (value, pdf) = shade.bsdf.eval_pdf(wo, sample.wi);
+            let (told, asked) = (sample.weight.g * sample.pdf, value.g);
+            // Of what is very narrow, a rounded direction is another one.
+            let near = (told - asked).abs() <= 0.02 * told.abs().max(asked.abs()) + 1e-4;
+            assert!(near && close(pdf / sample.pdf, 1.0, 0.02), "{name}: {told} {asked}, {pdf} {sample:?}");
+        }
+        sum += sample.weight * (sample.ior * sample.ior / (count * count) as f32);
+    }
+    sum
+}
+
+#[test]
+fn light_is_finite_and_no_more_than_there_was() {
+    let mut random = Random::new(811);
+    for (name, table, id) in examples() {
+        for _ in 0..60 {
+            let (surface, tangents) = place(&mut random);
+            let tangents = Some(&tangents).filter(|_| random.f32() < 0.8);
+            let around_ior = if random.f32() < 0.5 { 1.0 } else { 1.4 };
+            let wo = random.unit_vector();
+            let view = View { wo, around_ior, tangents, pick: random.f32(), ..View::of(&surface) };
+            let shade = table.shade(id, &view);
+            assert!((0.0..=1.0).contains(&shade.opacity), "{name}: {shade:?}");
+            assert!(shade.emission.to_array().iter().all(|v| *v >= 0.0 && v.is_finite()), "{name}: {shade:?}");
+            let Frame { tangent, bitangent, normal } = shade.frame;
+            assert!(close3(tangent.cross(bitangent), normal, 1e-5) && normal.is_normalized(), "{name}: {shade:?}");
+            let energy = energy(&name, &shade, shade.frame.to_local(wo), &mut random);
+            assert!(energy.max_channel() <= 1.1, "{name}: {energy:?} {shade:?}");
+        }
+    }
+}
+
+/// A million samples of each example in all, somewhere, seen from anywhere: what a kind makes of its numbers is a sum of lobes, each of
+/// which the contract of `bsdf` tests from all sides.
+#[test]
+fn directions_follow_their_density() {
+    let mut random = Random::new(816);
+    let all = examples();
+    let (mut tested, count) = (0, all.len());
+    for (name, table, id) in all {
+        let found = (0..20).find_map(|_| {
+            let (surface, tangents) = place(&mut random);
+            let wo = random.unit_vector();
+            let view = View { wo, tangents: Some(&tangents), pick: random.f32(), ..View::of(&surface) };
+            let shade = table.shade(id, &view);
+            let local = shade.frame.to_local(wo);
+            // Lobes thinner than the test's cells are left to those tests, and so is what gives nothing from here.
+            let peak = (0..500).filter_map(|_| shade.bsdf.sample(local, random.vec2(), random.f32()));
+            let peak = peak.filter(|s| s.scatter != Scatter::Specular).map(|s| s.pdf).fold(0.0, f32::max);
+            (peak > 0.0 && peak < 50.0).then_some((shade.bsdf, local))
+        });
+        let Some((bsdf, local)) = found else { continue };
+        let checked = juggler_bsdf::testing::follows_its_density(&bsdf, local, 1_000_000, 1e-3 / count as f64);
+        assert!(checked.is_ok(), "{name}, {local}: {checked:?}");
+        tested += 1;
+    }
+    assert!(tested * 2 > count, "{tested} of {count}");
+}
+
+#[test]
+fn what_is_opaque_looks_the_same_from_both_sides() {
+    let mut random = Random::new(812);
+    let sided = |name: &str| ["phong", "normal_map", "bump_map", "\"red\""].iter().any(|kind| name.contains(kind));
+    let mut seen = 0;
+    for (name, table, id) in examples().into_iter().filter(|(name, ..)| !sided(name)) {
+        for _ in 0..20 {
+            let (surface, tangents) = place(&mut random);
+            let turned = Surface { normal: -surface.normal, shading_normal: -surface.shading_normal, ..surface };
+            let view = View { wo: random.unit_vector(), tangents: Some(&tangents), ..View::of(&surface) };
+            let other = View { surface: &turned, normal: turned.shading_normal, ..view };
+            let (one, other) = (table.shade(id, &view), table.shade(id, &other));
+            if table.interior(id).is_some() || one.opacity == 0.0 {
+                continue;
+            }
+            let wi = random.unit_vector();
+            let light = |shade: &Shade| shade.bsdf.eval(shade.frame.to_local(view.wo), shade.frame.to_local(wi));
+            assert_eq!(light(&one), light(&other), "{name}");
+            seen += u32::from(!light(&one).is_black());
+        }
+    }
+    assert!(seen > 100, "{seen}");
+}
+
+#[test]
+fn what_has_an_inside_stands_on_its_outside() {
+    let mut random = Random::new(813);
+    let (mut inside, mut thin) = (0, 0);
+    for (name, table, id) in examples() {
+        for _ in 0..10 {
+            let (surface, tangents) = place(&mut random);
+            let wo = random.unit_vector();
+            let shade = table.shade(id, &View { wo, tangents: Some(&tangents), ..View::of(&surface) });
+            if table.interior(id).is_some() {
+                assert!(shade.opacity == 0.0 || shade.transmissive, "{name}");
+                let outwards = shade.frame.normal.dot(surface.normal) > 0.0;
+                assert!(outwards || shade.opacity == 0.0, "{name}");
+                inside += 1;
+            } else {
+                assert!(shade.frame.normal.dot(wo) > 0.0, "{name}");
+                thin += u32::from(shade.transmissive);
+            }
+        }
+    }
+    assert!(inside > 0 && thin > 0);
+    // What is refracted is refracted by the index inside over that around, whoever describes it.
+    for json in
+        [r#"{"dielectric": {"ior": 1.8}}"#, r#"{"principled": {"ior": 1.8, "transmission": 1, "roughness": 0}}"#]
+    {
+        let (table, id) = compile(json).unwrap();
+        let interior = table.interior(id).unwrap();
+        assert_eq!(table.interiors()[interior.place()].ior, 1.8);
+        let surface = at(0.0);
+        let shade = table.shade(id, &View { around_ior: 1.2, ..View::of(&surface) });
+        let through = shade.bsdf.deltas(Vec3::Z).into_iter().find(|delta| delta.is_transmitted(Vec3::Z)).unwrap();
+        assert!(close(through.ior, 1.5, 1e-6), "{through:?}");
+    }
+}
+
+#[test]
+fn what_shines_is_known_to_shine() {
+    let mut random = Random::new(814);
+    let holed = [
+        r#"{"emissive": {"radiance": 2, "material": {"mask": {"opacity": 0.3}}}}"#,
+        r#"{"mix": {"amount": 0.25, "a": {"emissive": {"radiance": 4}}, "b": {"mask": {"opacity": "tiles", "material":
+            {"mix": {"a": {"principled": {"emissive": [1, 2, 3]}}}}}}}}"#,
+    ];
+    let more = holed.map(|json| made(&serde_json::from_str(json).unwrap()));
+    let mut shining = 0;
+    for (name, table, id) in examples().into_iter().chain(more) {
+        for _ in 0..10 {
+            let (surface, _) = place(&mut random);
+            let view = View { wo: random.unit_vector(), ..View::of(&surface) };
+            let picks = 200;
+            let mut mean = Rgb::BLACK;
+            for i in 0..picks {
+                let shade = table.shade(id, &View { pick: (i as f32 + 0.5) / picks as f32, ..view });
+                mean += shade.emission * (shade.opacity / picks as f32);
+            }
+            let radiance = table.radiance(id, &view);
+            let near = (mean - radiance).map(f32::abs).max_channel() <= 0.03 * radiance.max_channel() + 1e-6;
+            assert!(near, "{name}: {mean:?} {radiance:?}");
+            match table.glow(id) {
+                None => assert!(radiance.is_black(), "{name}"),
+                Some(Glow { radiance: Some(known), sides }) if sides == Sides::Both || view.is_outside() => {
+                    assert_eq!(known, radiance, "{name}");
+                    shining += 1;
+                }
+                Some(glow) => assert!(glow.radiance.is_none() || radiance.is_black(), "{name}"),
+            }
+        }
+    }
+    assert!(shining > 0);
+}
+
+/// Every field that may be a texture, of every kind whose fields are many.
+const WILD: &[(&str, &[&str])] = &[
+    ("diffuse", &["reflectance", "roughness"]),
+    ("conductor", &["reflectance", "edge_tint", "roughness", "anisotropy", "anisotropy_rotation"]),
+    ("dielectric", &["roughness", "anisotropy", "anisotropy_rotation", "reflection_tint", "transmission_tint"]),
+    (
+        "plastic",
+        &["reflectance", "diffuse_roughness", "roughness", "anisotropy", "anisotropy_rotation", "reflection_tint"],
+    ),
+    ("velvet", &["sheen_color", "sheen_roughness", "reflectance", "roughness"]),
+    ("translucent", &["reflectance", "transmittance"]),
+    (
+        "principled",
+        &[
+            "base_color",
+            "metallic",
+            "roughness",
+            "specular",
+            "specular_color",
+            "anisotropy",
+            "anisotropy_rotation",
+            "clearcoat",
+            "clearcoat_roughness",
+            "sheen_color",
+            "sheen_roughness",
+            "iridescence",
+            "iridescence_thickness",
+            "transmission",
+            "diffuse_transmission",
+            "diffuse_transmission_color",
+            "opacity",
+        ],
+    ),
+    ("normal_map", &["texture", "strength"]),
+    ("bump_map", &["height"]),
+];
+
+#[test]
+fn textures_beyond_their_range_are_cut_off() {
+    let mut random = Random::new(815);
+    for (kind, fields) in WILD {
+        let all = fields.iter().map(|field| vec![*field]).chain([fields.to_vec()]);
+        for wild in all {
+            let texts: Vec<String> = wild.iter().map(|field| format!(r#""{field}": "wild""#)).collect();
+            let json = format!(r#"{{"{kind}": {{{}}}}}"#, texts.join(", "));
+            let (table, id) = compile(&json).unwrap_or_else(|error| panic!("{json}: {error}"));
+            // A rotation makes no difference to what is round.
+            assert!(table.is_textured(id) || wild == ["anisotropy_rotation"], "{json}");
+            for _ in 0..8 {
+                let (surface, tangents) = place(&mut random);
+                let wo = random.unit_vector();
+                let view = View { wo, tangents: Some(&tangents), ..View::of(&surface) };
+                let shade = table.shade(id, &view);
+                let energy = energy(&json, &shade, shade.frame.to_local(wo), &mut random);
+                assert!(energy.max_channel() <= 1.1, "{json}: {energy:?}");
+                assert!((0.0..=1.0).contains(&shade.opacity), "{json}");
+            }
+        }
+        // A name that the scene has not is told by its field.
+        for field in *fields {
+            let error = compile(&format!(r#"{{"{kind}": {{"{field}": "nothing"}}}}"#)).unwrap_err();
+            assert_eq!(error.path(), format!("{kind}.{field}"));
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_path() {
+    for (json, path) in [
+        (r#"{"diffuse": {"roughness": 2}}"#, "diffuse.roughness"),
+        (r#"{"conductor": {"anisotropy": -2}}"#, "conductor.anisotropy"),
+        (r#"{"dielectric": {"anisotropy_rotation": 1e9}}"#, "dielectric.anisotropy_rotation"),
+        (r#"{"plastic": {"ior": 0.9}}"#, "plastic.ior"),
+        (r#"{"plastic": {"reflectance": [0, 2, 0]}}"#, "plastic.reflectance"),
+        (r#"{"velvet": {"sheen_roughness": -1}}"#, "velvet.sheen_roughness"),
+        (r#"{"translucent": {"reflectance": 0.6, "transmittance": [0.1, 0.5, 0.1]}}"#, "translucent.transmittance"),
+        (r#"{"principled": {"metallic": 1.5}}"#, "principled.metallic"),
+        (r#"{"principled": {"ior": 0.5}}"#, "principled.ior"),
+        (r#"{"principled": {"emissive": [-1, 0, 0]}}"#, "principled.emissive"),
+        (r#"{"principled": {"emissive_strength": -1}}"#, "principled.emissive_strength"),
+        (r#"{"principled": {"medium": {"distance": 0}}}"#, "principled.medium.distance"),
+        (r#"{"principled": {"alpha_cutoff": 3}}"#, "principled.alpha_cutoff"),
+        (r#"{"principled": {"opacity": -0.1}}"#, "principled.opacity"),
+        (r#"{"mask": {"cutoff": 2}}"#, "mask.cutoff"),
+        (r#"{"normal_map": {"strength": -1}}"#, "normal_map.strength"),
+        (r#"{"normal_map": {"material": {"plastic": {"ior": 11}}}}"#, "normal_map.material.plastic.ior"),
+        (r#"{"bump_map": {"distance": 1e9}}"#, "bump_map.distance"),
+        (r#"{"bump_map": {"material": "nobody"}}"#, "bump_map.material"),
+    ] {
+        assert_eq!(compile(json).map(|_| ()).unwrap_err().path(), path, "{json}");
+    }
+}
+
+#[test]
+fn opacity_may_have_sharp_edges() {
+    for (fields, opacity) in [(r#""opacity": 0.4"#, 0.4), (r#""opacity": 0.4, "alpha_cutoff": 0.5"#, 0.0)] {
+        let (table, id) = compile(&format!(r#"{{"principled": {{{fields}}}}}"#)).unwrap();
+        assert!(table.has_holes(id) && table.is_transparent(id));
+        assert!(close(table.gap(id, &at(0.0)), 1.0 - opacity, 1e-6));
+        assert!(close(table.filter(id, &at(0.0)).g, 1.0 - opacity, 1e-6));
+        assert_eq!(table.shade(id, &View::of(&at(0.0))).opacity, opacity);
+    }
+    let (table, id) = compile(r#"{"principled": {"opacity": "tiles", "alpha_cutoff": 0.2}}"#).unwrap();
+    assert_eq!((table.gap(id, &at(0.5)), table.gap(id, &at(1.5))), (0.0, 1.0));
+    let (table, id) = compile(r#"{"principled": {"opacity": 0.6, "alpha_cutoff": 0.5}}"#).unwrap();
+    assert!(!table.has_holes(id));
+}

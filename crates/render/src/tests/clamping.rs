@@ -1,0 +1,102 @@
+//! Clamping: what it takes and what it leaves are what was there, whoever renders which part.
+
+use super::*;
+use juggler_camera::film::{Clamped, Film, Layout, Mitchell};
+use juggler_integrator::Path;
+use rayon::ThreadPoolBuilder;
+use std::convert::Infallible;
+
+const SIZE: UVec2 = UVec2::new(23, 18);
+const REGION: Rect = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
+
+/// A bright ball in a corner with gloss.
+fn corner() -> World {
+    let floor = r#"{"disk": {"radius": 6}}"#;
+    let lambert = r#"{"diffuse": {"reflectance": [0.8, 0.6, 0.3]}}"#;
+    let metal = r#"{"conductor": {"roughness": 0.3}}"#;
+    let bright = r#"{"phong": {"emission": [30, 20, 5]}}"#;
+    let objects = [
+        (floor, Vec3::new(0.0, -1.0, 0.0), lambert),
+        (r#"{"sphere": {"radius": 0.9}}"#, Vec3::new(-0.8, 0.0, 0.0), metal),
+        (r#"{"sphere": {"radius": 0.7}}"#, Vec3::new(0.8, -0.3, 0.3), lambert),
+        (r#"{"sphere": {"radius": 0.3}}"#, Vec3::new(0.3, 1.2, 0.6), bright),
+    ];
+    world(&objects, &[], Rgb::splat(0.2))
+}
+
+fn path(direct: Option<f32>, indirect: Option<f32>) -> AnyIntegrator {
+    Path { max_depth: 6, clamp_direct: direct, clamp_indirect: indirect, ..Path::default() }.into()
+}
+
+/// Renders with a filter that weights samples, by less than nothing too.
+fn with_job<T>(integrator: &AnyIntegrator, samples: u32, test: impl FnOnce(&Job) -> T) -> T {
+    let (world, camera) = (corner(), look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", SIZE));
+    let filter = Mitchell::default().filter(samples);
+    test(&Job { filter, ..job(&world, &camera, integrator, samples) })
+}
+
+fn tile(integrator: &AnyIntegrator, samples: u32) -> Tile {
+    with_job(integrator, samples, |job| job.render(&Work::first(REGION, samples), &Control::default()).unwrap())
+}
+
+fn light(tile: &Tile) -> f64 {
+    tile.means().iter().map(|Rgb { r, g, b }| (f64::from(*r) + f64::from(*g) + f64::from(*b)) / 3.0).sum()
+}
+
+#[test]
+fn what_is_taken_and_what_is_left_are_all_there_was() {
+    for samples in [1, 37] {
+        let all = light(&tile(&path(None, None), samples));
+        let mut taken = vec![];
+        for (direct, indirect) in [(Some(1.5), None), (None, Some(0.05)), (Some(1.5), Some(0.05))] {
+            let tile = tile(&path(direct, indirect), samples);
+            taken.push(tile.clamped().total());
+            let sum = light(&tile) + tile.clamped().total();
+            assert!((sum / all - 1.0).abs() < 1e-5, "{direct:?}, {indirect:?}: {sum} instead of {all}");
+        }
+        assert!(taken.iter().all(|taken| *taken > 0.001 * all), "{taken:?} of {all}");
+        assert!((taken[0] + taken[1] - taken[2]).abs() < 1e-6 * all, "each light is one or the other: {taken:?}");
+    }
+}
+
+#[test]
+fn limits_that_nothing_reaches_change_no_bit() {
+    let (plain, clamped) = (tile(&path(None, None), 20), tile(&path(Some(1e9), Some(1e9)), 20));
+    assert_eq!(plain, clamped);
+    assert_eq!(clamped.clamped(), Clamped::default());
+    assert_eq!(path(None, Some(f32::INFINITY)).clamp(), None);
+}
+
+#[test]
+fn nothing_brighter_than_the_limit_is_left() {
+    // One sample, in the open: at most one light and one emission a vertex.
+    let means = tile(&path(Some(0.5), Some(0.5)), 1).means();
+    let brightest = means.iter().map(|mean| mean.max_channel()).fold(0.0, f32::max);
+    assert!(brightest > 0.5 && brightest <= 0.5 * 12.0, "{brightest}");
+}
+
+#[test]
+fn the_sum_is_the_same_whoever_renders_what() {
+    let integrator = path(Some(1.5), Some(0.05));
+    let whole = tile(&integrator, 40).clamped();
+    for threads in [1, 2, 4] {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            with_job(&integrator, 40, |job| {
+                let schedule = Schedule { band_pixels: 1 << (4 * threads), ..Schedule::default() };
+                let control = Control::default();
+                let rows = |_| Ok::<(), Stopped>(());
+                assert_eq!(render(job, REGION, schedule, &control, rows), Ok(whole), "{threads} threads");
+                // In parts, the first ending within a block.
+                let film = Film::new(Layout::new(REGION), 0..7);
+                expose(job, &film, Stop::Samples, &control).unwrap();
+                let rest = Film::new(Layout::new(REGION), 0..40);
+                film.tiles().for_each(|(number, tile)| assert_eq!(rest.add(number, tile), Ok(true)));
+                expose(job, &rest, Stop::Evenly, &control).unwrap();
+                assert_eq!(rest.clamped(), whole, "{threads} threads, in parts");
+                let developed: Result<(), Infallible> = rest.develop(|_| Ok(()));
+                assert_eq!(developed, Ok(()));
+            });
+        });
+    }
+}

@@ -1,0 +1,146 @@
+//! A pixel's samples, inspected: the light of the picture to the bit, all of it accounted for.
+
+use super::*;
+use juggler_camera::film::{AnyFilter, Mitchell, Tent};
+use juggler_integrator::{Direct, Event, Path, Scattering, Way};
+use juggler_world::{LightSource, LightsApart};
+use std::collections::BTreeSet;
+
+/// A room with a lamp, a sun, a shape that shines, glass, a polished ball, a medium and a mask with holes.
+fn room() -> World {
+    let matt = r#"{"diffuse": {"reflectance": [0.7, 0.6, 0.5]}}"#;
+    let objects = [
+        (r#"{"plane": {}}"#, Vec3::new(0.0, -1.0, 0.0), matt),
+        (r#"{"sphere": {"radius": 0.9}}"#, Vec3::new(-1.2, 0.0, 0.0), r#"{"dielectric": {"ior": 1.5}}"#),
+        (r#"{"sphere": {"radius": 0.8}}"#, Vec3::new(1.2, 0.0, -0.5), r#"{"conductor": {"roughness": 0.3}}"#),
+        (r#"{"sphere": {"radius": 0.3}}"#, Vec3::new(0.0, 2.0, 0.5), r#"{"emissive": {"radiance": 1, "scale": 6}}"#),
+        (
+            r#"{"sphere": {"radius": 0.6}}"#,
+            Vec3::new(0.2, -0.2, 1.2),
+            r#"{"dielectric": {"ior": 1.3, "medium": {"scattering": 2, "absorption": 0.3}}}"#,
+        ),
+    ];
+    let lights = [
+        r#"{"point": {"position": [2, 4, 3], "intensity": 30}}"#,
+        r#"{"directional": {"direction": [-1, -1, 0], "intensity": 0.3}}"#,
+    ];
+    world(&objects, &lights, Rgb::new(0.3, 0.4, 0.6))
+}
+
+fn difference(a: Rgb, b: Rgb) -> f32 {
+    (a - b).map(f32::abs).max_channel() / (1e-3 + a.max_channel())
+}
+
+#[test]
+fn it_is_the_pixel_of_the_picture_to_the_bit_and_its_ways_sum_up_to_it() {
+    let size = UVec2::new(9, 7);
+    let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
+    let clamped = Path { clamp_direct: Some(2.0), clamp_indirect: Some(0.3), ..Path::default() };
+    let classic = Classic { max_depth: 3, min_weight: 1e-4, occlusion_distance: Some(2.0) };
+    let cases: [(World, AnyIntegrator, AnyFilter, u32); 6] = [
+        (room(), Path::default().into(), BoxFilter {}.into(), 40),
+        (room(), clamped.into(), Mitchell::default().into(), 21),
+        (room(), Path { light_samples: Some(3), ..Path::default() }.into(), Tent { radius: 1.0 }.into(), 5),
+        (room(), Direct {}.into(), BoxFilter {}.into(), 1),
+        (room(), Classic::default().into(), BoxFilter {}.into(), 4),
+        (busy(), classic.into(), BoxFilter {}.into(), 3),
+    ];
+    for (world, integrator, filter, samples) in cases {
+        let (world, _) = world.with_lights_apart();
+        let job = Job { filter: filter.filter(samples), ..job(&world, &camera, &integrator, samples) };
+        let whole = job.render(&Work::first(Rect { x: 0, y: 0, width: 9, height: 7 }, samples), &Control::default());
+        let (whole, name) = (whole.unwrap(), integrator.name());
+        for pixel in [[0, 0], [3, 3], [4, 4], [6, 3], [8, 6], [4, 1]] {
+            let (mut sum, mut ways) = (Rgb::BLACK, Rgb::BLACK);
+            let (mean, statistics) = inspect(&job, pixel, &Control::default(), |sample| {
+                sum += sample.radiance;
+                let lights = sample.vertices.iter().flat_map(|vertex| &vertex.lights);
+                ways += lights.fold(sample.untold, |sum, gain| sum + gain.radiance);
+            })
+            .unwrap();
+            let place = (pixel[1] * 9 + pixel[0]) as usize;
+            assert_eq!(mean, whole.means()[place], "{name}, pixel {pixel:?}");
+            assert_eq!(statistics, whole.statistics(place));
+            assert!(difference(sum, ways) < 1e-4, "{name}, pixel {pixel:?}: {sum:?} {ways:?}");
+            assert!(difference(mean, sum / samples as f32) < 1e-4);
+        }
+    }
+}
+
+/// What was told of some samples.
+#[derive(Default)]
+struct Told {
+    events: BTreeSet<(Scattering, bool)>,
+    sources: BTreeSet<LightSource>,
+    by_balls: u32,
+    ways: [u32; 3],
+}
+
+impl Told {
+    /// Checks a place against the one before it.
+    fn place(&mut self, sample: &Inspected, number: usize) {
+        let vertex = &sample.vertices[number];
+        assert_eq!(vertex.parent.is_none(), number == 0);
+        let Some(parent) = vertex.parent.map(|parent| &sample.vertices[parent as usize]) else { return };
+        let event = vertex.came.unwrap();
+        self.events.insert((event.scattering, event.transmitted));
+        assert!(vertex.parent < Some(number as u32));
+        assert_eq!(vertex.depth, parent.depth + u32::from(event.scattering != Scattering::Passed));
+        let from = parent.scattered_at.unwrap_or_else(|| parent.met.unwrap().surface.point);
+        assert_eq!(parent.scattered_at.is_some(), event == Event::VOLUME);
+        assert!((vertex.ray.origin - from).length() < 1e-3, "{vertex:?} {from}");
+    }
+
+    /// Checks light against the place where it was added.
+    fn gain(&mut self, vertex: &PathVertex, gain: &LightGain, apart: &LightsApart) {
+        self.sources.insert(apart.source(gain.group).0);
+        self.ways[gain.way as usize] += 1;
+        let more = if gain.asked { 2 } else { 1 };
+        assert!(gain.by.is_some() || gain.stretches == vertex.depth + more);
+        assert_eq!(gain.way, Way::of(gain.stretches));
+        if let Some((ball, is_mirror)) = &gain.by {
+            self.by_balls += 1;
+            assert!([1, 4].contains(&ball.object));
+            assert_eq!(gain.stretches, vertex.depth + if *is_mirror { 3 } else { 4 });
+        }
+    }
+}
+
+#[test]
+fn places_follow_each_other_and_are_told_as_what_they_are() {
+    let size = UVec2::new(15, 11);
+    let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", size);
+    let (world, apart) = room().with_lights_apart();
+    let integrator = Path::default().into();
+    let job = job(&world, &camera, &integrator, 64);
+    let mut told = Told::default();
+    for y in 0..size.y {
+        let check = |sample: Inspected| {
+            (0..sample.vertices.len()).for_each(|number| told.place(&sample, number));
+            for vertex in &sample.vertices {
+                vertex.lights.iter().for_each(|gain| told.gain(vertex, gain, &apart));
+            }
+        };
+        inspect(&job, [7, y], &Control::default(), check).unwrap();
+    }
+    let Told { events, sources, by_balls, ways } = told;
+    let wanted = [LightSource::Background, LightSource::Lamp(0), LightSource::Lamp(1), LightSource::Entry(0)];
+    assert!(wanted.iter().all(|source| sources.contains(source)), "{sources:?}");
+    let wanted = [
+        (Scattering::Diffuse, false),
+        (Scattering::Specular, true),
+        (Scattering::Specular, false),
+        (Scattering::Volume, false),
+    ];
+    assert!(wanted.iter().all(|event| events.contains(event)), "{events:?}");
+    assert!(by_balls > 0 && ways.iter().all(|count| *count > 0), "{by_balls} {ways:?}");
+}
+
+#[test]
+fn a_cancelled_look_ends() {
+    let camera = look(Vec3::new(0.0, 1.0, 6.0), Vec3::ZERO, "40", PIXEL);
+    let (world, integrator) = (room(), Path::default().into());
+    let control = Control::default();
+    control.cancel();
+    assert_eq!(inspect(&job(&world, &camera, &integrator, 4), [0, 0], &control, |_| {}), Err(Stopped));
+}

@@ -1,0 +1,80 @@
+//! Light from all around, against sums over all directions.
+
+use crate::probe::{Scene, at_origin, read, traced};
+use juggler_light::background::{AnyBackground, Environment, Panorama};
+use juggler_math::{Image, Ray, Rgb, Vec3};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+fn prepared(mut background: AnyBackground) -> AnyBackground {
+    background.prepare().unwrap();
+    background
+}
+
+/// What a floor of albedo 0.5 shows of the upper half: 0.5 / π ∫ L cos dω.
+fn shown(background: &AnyBackground, rows: u32) -> f64 {
+    let columns = 2 * rows;
+    let mut sum = 0.0;
+    for i in 0..rows {
+        // Even in the squared sine, so that each place counts the same.
+        let height = ((f64::from(i) + 0.5) / f64::from(rows)).sqrt();
+        for j in 0..columns {
+            let (sin, cos) = ((f64::from(j) + 0.5) * TAU / f64::from(columns)).sin_cos();
+            let radius = (1.0 - height * height).sqrt();
+            let way = Vec3::new((radius * cos) as f32, height as f32, (radius * sin) as f32);
+            sum += f64::from(background.radiance(&Ray::new(Vec3::ZERO, way)).r);
+        }
+    }
+    0.5 * sum / f64::from(rows * columns)
+}
+
+#[test]
+fn the_same_everywhere() {
+    traced(Scene::floor().in_light(3.0), &at_origin(), 16).is(1.5);
+}
+
+#[test]
+fn from_the_horizon_to_the_zenith() {
+    // ∫ cos (h + (z - h) cos) dω / π = h / 3 + 2 z / 3, and (h + z) / 2 where it goes with the square.
+    for (blend, expected) in [("sine", 1.0 / 3.0 + 8.0 / 3.0), ("sine_squared", 2.5)] {
+        let sky = format!(r#"{{"gradient": {{"horizon": 1, "zenith": 4, "nadir": 9, "blend": "{blend}"}}}}"#);
+        traced(Scene::floor().before(prepared(read(&sky))), &at_origin(), 256).is(0.5 * expected);
+    }
+}
+
+#[test]
+fn a_clear_sky_with_its_sun() {
+    let sky = |sun: bool| {
+        prepared(read(&format!(r#"{{"sky": {{"sun_elevation_degrees": 30, "turbidity": 3, "sun": {sun}}}}}"#)))
+    };
+    let without = shown(&sky(false), 400);
+    traced(Scene::floor().before(sky(false)), &at_origin(), 256).is(without);
+    // The sun's disk: its radiance at the middle, its solid angle, its height.
+    let towards = {
+        let (sin, cos) = 135f64.to_radians().sin_cos();
+        let up = 30f64.to_radians();
+        Vec3::new((up.cos() * sin) as f32, up.sin() as f32, (-up.cos() * cos) as f32)
+    };
+    let ray = Ray::new(Vec3::ZERO, towards.normalize());
+    let disk = f64::from(sky(true).radiance(&ray).r) - f64::from(sky(false).radiance(&ray).r);
+    let solid_angle = TAU * (1.0 - 0.2665f64.to_radians().cos());
+    let direct = 0.5 / PI * disk * solid_angle * 0.5;
+    traced(Scene::floor().before(sky(true)), &at_origin(), 256).is(without + direct);
+}
+
+/// A grey panorama with a small hot spot.
+pub fn panorama() -> AnyBackground {
+    let mut image = Image::filled(64, 32, Rgb::splat(0.3));
+    for (x, y) in [(20, 8), (21, 8), (21, 9)] {
+        image.pixels_mut()[y * 64 + x] = Rgb::new(300.0, 200.0, 100.0);
+    }
+    let mut environment = Environment::from_file("spot.exr");
+    environment.set_panorama(Arc::new(Panorama::new(image).unwrap()));
+    prepared(environment.into())
+}
+
+#[test]
+fn a_panorama_with_a_hot_spot() {
+    let expected = shown(&panorama(), 1500);
+    traced(Scene::floor().before(panorama()), &at_origin(), 256).is(expected);
+}

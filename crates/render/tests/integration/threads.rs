@@ -1,0 +1,98 @@
+//! The same bits, whoever does what.
+
+use crate::probe::{Scene, path, read};
+use juggler_camera::film::{AnyFilter, Rect};
+use juggler_camera::layer;
+use juggler_camera::sampler::AnySampler;
+use juggler_camera::{AnyCamera, Shot};
+use juggler_math::{Rgb, Transform, UVec2, Vec3};
+use juggler_render::{Control, Job, Schedule, Scheduler, Stopped, Work, render};
+use juggler_world::World;
+
+const SIZE: UVec2 = UVec2::new(30, 22);
+const SAMPLES: u32 = 6;
+
+/// Glass, fog, textures, lamps of all kinds, a sky.
+fn world() -> World {
+    let textures = r#"{"tiles": {"checker": {"size": 0.5, "even": [0.9, 0.5, 0.2], "odd": [0.1, 0.3, 0.8]}},
+        "clouds": {"fbm": {}}}"#;
+    let tilt = Transform::rotation(Vec3::new(1.0, 0.3, 0.2), 2.6).unwrap();
+    Scene::textured(textures)
+        .with(r#"{"plane": {}}"#, Vec3::ZERO, r#"{"diffuse": {"reflectance": "tiles"}}"#)
+        .with(
+            r#"{"sphere": {"radius": 1}}"#,
+            Vec3::new(-1.2, 1.0, 0.0),
+            r#"{"dielectric": {"ior": 1.5, "medium": {"color": [0.5, 0.9, 0.7]}}}"#,
+        )
+        .with(
+            r#"{"sphere": {"radius": 0.9}}"#,
+            Vec3::new(1.2, 1.0, 0.0),
+            r#"{"boundary": {"medium": {"scattering": [2, 1, 0.5], "anisotropy": 0.4}}}"#,
+        )
+        .with(r#"{"cuboid": {}}"#, Vec3::new(0.5, 0.3, 2.0), r#"{"dielectric": {"ior": 1.33, "roughness": 0.3}}"#)
+        .with(
+            r#"{"sphere": {"radius": 0.5}}"#,
+            Vec3::new(0.0, 0.5, -1.5),
+            r#"{"mask": {"opacity": "clouds", "material": {"conductor": {"metal": "gold", "roughness": 0.4}}}}"#,
+        )
+        .placed(
+            r#"{"rectangle": {"size": [2, 2]}}"#,
+            tilt.then(&Transform::translation(Vec3::Y * 4.0)),
+            r#"{"emissive": {"radiance": "tiles", "scale": 5}}"#,
+        )
+        .lit(r#"{"point": {"position": [3, 3, 3], "intensity": 4}}"#)
+        .in_light(0.2)
+        .world()
+}
+
+fn camera() -> Shot {
+    let json = r#"{"thin_lens": {"eye": [0, 2, 6], "look_at": [0, 0.8, 0], "lens_radius": 0.05, "focus_distance": 6}}"#;
+    read::<AnyCamera>(json).project(SIZE).unwrap().into()
+}
+
+fn bits(pixels: &[Rgb]) -> Vec<[u32; 3]> {
+    pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
+}
+
+#[test]
+fn threads_and_tiles_cannot_be_seen() {
+    let (world, camera, integrator) = (world(), camera(), path(""));
+    let (filter, pattern) = (read::<AnyFilter>(r#"{"box": {}}"#), read::<AnySampler>(r#"{"sobol": {}}"#));
+    let job = Job {
+        world: &world,
+        camera: &camera,
+        integrator: &*integrator,
+        filter: filter.filter(SAMPLES),
+        pattern: pattern.pattern(SAMPLES),
+        samples: SAMPLES,
+        seed: 7,
+        layers: &layer::NONE,
+        frames: None,
+    };
+    let region = Rect { x: 0, y: 0, width: SIZE.x, height: SIZE.y };
+    let whole = bits(&job.render(&Work::first(region, SAMPLES), &Control::default()).unwrap().means());
+    for threads in [1, 2, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        for scheduler in [Scheduler::WorkStealing, Scheduler::RowQueue, Scheduler::StaticRows] {
+            let mut rows = Vec::new();
+            let schedule = Schedule { scheduler, band_pixels: 300 };
+            pool.install(|| {
+                render::<Stopped>(&job, region, schedule, &Control::default(), |band| {
+                    rows.extend(band);
+                    Ok(())
+                })
+            })
+            .unwrap();
+            assert_eq!(bits(&rows), whole, "{threads} threads, {scheduler:?}");
+        }
+    }
+    for (x, y, width, height) in [(0, 0, 1, 1), (7, 3, 5, 9), (13, 20, 17, 2)] {
+        let part = Rect { x, y, width, height };
+        let pixels = bits(&job.render(&Work::first(part, SAMPLES), &Control::default()).unwrap().means());
+        for (i, pixel) in (0u32..).zip(&pixels) {
+            let (column, row) = (x + i % width, y + i / width);
+            assert_eq!(*pixel, whole[(row * SIZE.x + column) as usize], "{column}, {row} of {part:?}");
+        }
+    }
+    assert!(whole.iter().collect::<std::collections::BTreeSet<_>>().len() > 500, "a picture, not a colour");
+}

@@ -1,0 +1,174 @@
+//! Pictures of rough balls in a white world: what loses no energy vanishes, seen from outside and, where light goes through
+//! it, from within, where radiance is n² times as large. With `JUGGLER_FURNACES=all` over a whole grid: `check.sh deep
+//! furnaces`.
+
+use crate::probe::{Measured, Scene, is_deep, path, read, square};
+use juggler_camera::AnyCamera;
+use juggler_math::Vec3;
+use juggler_math::testing::family_wise_deviations;
+
+/// How far a mean may be off.
+const NEAR: f64 = 0.002;
+/// A picture of a ball of radius 1 at the origin that covers all of it, by pixel.
+fn ball(material: &str, is_within: bool, edge: u32, samples: u32) -> Vec<f64> {
+    let camera = if is_within {
+        WITHIN
+    } else {
+        r#"{"orthographic": {"eye": [2, 1, 4], "look_at": [0, 0, 0], "height": 1.41}}"#
+    };
+    ball_by(camera, Scene::new(), material, edge, samples)
+}
+
+/// A camera inside the ball.
+pub const WITHIN: &str =
+    r#"{"perspective": {"eye": [0.3, 0.2, 0.1], "look_at": [0.5, -0.1, 1], "vertical_fov_degrees": 100}}"#;
+
+/// A picture by a camera of that ball, of a material that may name textures of the scene.
+pub fn ball_by(camera: &str, scene: Scene, material: &str, edge: u32, samples: u32) -> Vec<f64> {
+    let world = scene.with(r#"{"sphere": {"radius": 1}}"#, Vec3::ZERO, material).in_light(1.0).world();
+    // Light may be caught for long; roulette would only bring noise.
+    let integrator = path(r#""max_depth": 1000"#);
+    square(&world, &read::<AnyCamera>(camera), &*integrator, edge, samples)
+}
+
+/// Rough glass.
+#[derive(Clone, Copy, Debug)]
+struct Glass {
+    ior: f64,
+    roughness: f64,
+    anisotropy: f64,
+    is_within: bool,
+}
+
+impl Glass {
+    fn pixels(self, edge: u32, samples: u32) -> Vec<f64> {
+        let Self { ior, roughness, anisotropy, is_within } = self;
+        let material =
+            format!(r#"{{"dielectric": {{"ior": {ior}, "roughness": {roughness}, "anisotropy": {anisotropy}}}}}"#);
+        let scale = if is_within { ior * ior } else { 1.0 };
+        ball(&material, is_within, edge, samples).into_iter().map(|value| value / scale).collect()
+    }
+}
+
+fn glasses() -> Vec<Glass> {
+    let few = [(2.4, 0.15, 0.0), (2.4, 0.3, 0.0), (1.5, 0.6, 0.7), (1.1, 1.0, 0.0)];
+    let mut all = vec![];
+    for is_within in [false, true] {
+        let of = |(ior, roughness, anisotropy)| Glass { ior, roughness, anisotropy, is_within };
+        if !is_deep() {
+            all.extend(few.map(of));
+            continue;
+        }
+        for ior in [1.1, 1.2, 1.33, 1.5, 1.7, 2.0, 2.4] {
+            for roughness in [0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0] {
+                all.extend([0.0, 0.5, -1.0].map(|anisotropy| of((ior, roughness, anisotropy))));
+            }
+        }
+    }
+    all
+}
+
+/// Checks that a white picture is white: its mean, and each of its pixels.
+fn check(what: &str, pixels: &[f64], cases: usize) -> Result<(), String> {
+    let (Measured { mean, sigma }, most) = (Measured::of(pixels), pixels.iter().copied().fold(0.0, f64::max));
+    println!("{what}: mean {mean:.5} ± {sigma:.5}, brightest {most:.4}");
+    let is_near = (mean - 1.0).abs() <= NEAR + family_wise_deviations(cases) * sigma && sigma < 0.5 * NEAR;
+    if is_near && most <= 1.5 { Ok(()) } else { Err(format!("{what}: {mean} ± {sigma}, brightest {most}")) }
+}
+
+#[test]
+fn rough_glass_vanishes() {
+    let (all, edge, samples) = if is_deep() { (glasses(), 64, 512) } else { (glasses(), 32, 144) };
+    let wrong: Vec<String> = all
+        .iter()
+        .filter_map(|glass| check(&format!("{glass:?}"), &glass.pixels(edge, samples), all.len()).err())
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Fireflies are rare: they show in large pictures.
+#[test]
+fn rough_glass_has_no_bright_pixels() {
+    let edge = if is_deep() { 256 } else { 32 };
+    let glass = Glass { ior: 2.4, roughness: 0.15, anisotropy: 0.0, is_within: false };
+    let cases = if is_deep() {
+        vec![glass, Glass { roughness: 0.5, ..glass }, Glass { anisotropy: 1.0, ..glass }]
+    } else {
+        vec![glass]
+    };
+    for glass in &cases {
+        check(&format!("{glass:?}"), &glass.pixels(edge, 256), cases.len()).unwrap();
+    }
+}
+
+#[test]
+fn rough_metal_vanishes() {
+    let few = [(0.3, 0.0), (0.7, 0.6), (1.0, -1.0)];
+    let grid = [0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0];
+    let grid = grid.into_iter().flat_map(|roughness| [0.0, 0.3, 0.7, -1.0].map(|anisotropy| (roughness, anisotropy)));
+    let all: Vec<(f64, f64)> = if is_deep() { grid.collect() } else { few.into() };
+    for (roughness, anisotropy) in &all {
+        let material =
+            format!(r#"{{"conductor": {{"reflectance": 1, "roughness": {roughness}, "anisotropy": {anisotropy}}}}}"#);
+        check(&material, &ball(&material, false, 32, 256), all.len()).unwrap();
+    }
+}
+
+/// Light that a leaning normal would send to the wrong side of the surface is not lost.
+#[test]
+fn glass_under_a_map_of_normals_vanishes() {
+    let few = [(1.5, 0.5, 1.0, false), (1.5, 0.5, 0.3, true)];
+    let grid = [1.2, 1.5, 2.0].into_iter().flat_map(|ior| [0.2, 0.5, 0.9].map(|roughness| (ior, roughness)));
+    let grid = grid.flat_map(|(ior, roughness)| [0.1, 1.0, 3.0].map(|strength| (ior, roughness, strength)));
+    let grid = grid.flat_map(|(ior, roughness, strength)| [false, true].map(|side| (ior, roughness, strength, side)));
+    let all: Vec<(f64, f64, f64, bool)> = if is_deep() { grid.collect() } else { few.into() };
+    let mut wrong = Vec::new();
+    for (ior, roughness, strength, is_within) in &all {
+        let glass = format!(r#"{{"dielectric": {{"ior": {ior}, "roughness": {roughness}}}}}"#);
+        let fields = format!(r#""texture": [0.7, 0.45, 0.9], "strength": {strength}, "material": {glass}"#);
+        let material = format!(r#"{{"normal_map": {{{fields}}}}}"#);
+        let scale = if *is_within { ior * ior } else { 1.0 };
+        // The densest and roughest glass needs that many samples for its standard error to be below half of `NEAR`.
+        let samples = if is_deep() { 512 } else { 256 };
+        let pixels: Vec<f64> =
+            ball(&material, *is_within, 32, samples).into_iter().map(|value| value / scale).collect();
+        wrong.extend(check(&format!("{material}, from within: {is_within}"), &pixels, all.len()).err());
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Patchworks and layers of `principled` keep 99 %, also of dense glass and metal from within,
+/// where light meets the metal some thirty times before it leaves.
+#[test]
+fn principled_glass_and_what_lies_over_it_vanishes() {
+    let outside = [
+        r#""transmission": 0.4"#,
+        r#""transmission": 0.4, "clearcoat": 1"#,
+        r#""transmission": 1, "clearcoat": 1"#,
+        r#""transmission": 1, "clearcoat": 1, "sheen_color": [1, 1, 1], "sheen_roughness": 0.5"#,
+        r#""transmission": 0.5, "metallic": 0.5, "roughness": 0.2"#,
+        r#""diffuse_transmission": 0.7, "medium": {"scattering": 1}"#,
+    ];
+    let within = [0.2, 1.0, 0.5].map(|roughness| {
+        (format!(r#""transmission": 0.4, "metallic": 0.5, "ior": 2, "roughness": {roughness}"#), Some(2.0))
+    });
+    let all: Vec<(String, Option<f64>)> = outside
+        .map(|numbers| (numbers.to_owned(), None))
+        .into_iter()
+        .chain(within.into_iter().skip(if is_deep() { 0 } else { 2 }))
+        .collect();
+    for (numbers, ior) in &all {
+        let material = format!(r#"{{"principled": {{"base_color": [1, 1, 1], {numbers}}}}}"#);
+        let scale = ior.map_or(1.0, |ior| ior * ior);
+        let samples = if ior.is_some() { 256 } else { 144 };
+        let pixels: Vec<f64> =
+            ball(&material, ior.is_some(), 32, samples).into_iter().map(|value| value / scale).collect();
+        let Measured { mean, sigma } = Measured::of(&pixels);
+        println!("{material}, from within: {}: {mean:.5} ± {sigma:.5}", ior.is_some());
+        let allowed = family_wise_deviations(all.len()) * sigma;
+        assert!(
+            sigma < 0.002 && mean >= 0.99 - allowed && mean <= 1.0 + NEAR + allowed,
+            "{material}: {mean} ± {sigma}"
+        );
+    }
+}

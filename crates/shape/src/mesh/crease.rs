@@ -1,0 +1,223 @@
+//! Smooth shading normals for a mesh without normals, up to a crease angle: corners of triangles that meet at an edge are
+//! smoothed together where the triangles' normals differ by no more than the angle, as in Blender's "shade smooth by angle".
+//! Positions are split where corners are not smoothed together.
+
+use super::MeshData;
+use crate::{InvalidShape, check};
+use juggler_math::{DVec3, fun};
+use std::collections::BTreeMap;
+
+/// Most triangles, so that all corners have a number.
+const MOST_TRIANGLES: usize = 1 << 30;
+
+/// How the corners of a mesh are smoothed.
+pub struct Creases {
+    /// Three numbers a triangle, each the place of a corner among the split positions.
+    triangles: Vec<[u32; 3]>,
+    /// Of each split position the position that it was, and the corners' group that it is smoothed with.
+    corners: Vec<(u32, u32)>,
+}
+
+impl Creases {
+    /// Of a mesh whose edges are creases where the normals of their two triangles differ by more than the angle. Edges of
+    /// one triangle, and of more than two, are creases, too. Positions at the same place are one.
+    pub fn new(data: &MeshData, angle_degrees: f32) -> Result<Self, InvalidShape> {
+        check::number("crease_angle_degrees", angle_degrees, 0.0, 180.0)?;
+        data.check()?;
+        if data.triangles.len() > MOST_TRIANGLES {
+            let message = format!("a mesh with a crease angle has at most {MOST_TRIANGLES} triangles");
+            return Err(check::invalid("crease_angle_degrees", message));
+        }
+        let groups = groups(data, f64::from(fun::cos(angle_degrees.to_radians())));
+        let mut known = BTreeMap::new();
+        let mut corners = Vec::new();
+        let mut split = |position: u32, group: u32| {
+            *known.entry((position, group)).or_insert_with(|| {
+                corners.push((position, group));
+                corners.len() as u32 - 1
+            })
+        };
+        let triangles = data.triangles.iter().zip(groups.as_chunks::<3>().0);
+        let triangles = triangles.map(|([a, b, c], [x, y, z])| [split(*a, *x), split(*b, *y), split(*c, *z)]).collect();
+        Ok(Self { triangles, corners })
+    }
+
+    /// A mesh of these corners with its normals: the mean of the triangles' normals by their areas, over each group. One
+    /// with normals of its own stays as it is.
+    pub fn smoothed(&self, data: MeshData) -> MeshData {
+        if !data.normals.is_empty() {
+            return data;
+        }
+        let groups = self.corners.iter().map(|(_, group)| *group as usize + 1).max().unwrap_or(0);
+        let mut sums = vec![DVec3::ZERO; groups];
+        for (number, corners) in self.triangles.iter().enumerate() {
+            let Some(facet) = data.facet(number) else { continue };
+            for corner in corners {
+                let group = self.corners.get(*corner as usize).and_then(|(_, group)| sums.get_mut(*group as usize));
+                group.into_iter().for_each(|sum| *sum += facet.winding());
+            }
+        }
+        let normal = |group: u32| sums.get(group as usize).copied().unwrap_or_default().normalize_or_zero().as_vec3();
+        let at = |position: &u32| *position as usize;
+        let positions = self.corners.iter().filter_map(|(position, _)| data.positions.get(at(position)).copied());
+        let uvs = self.corners.iter().filter_map(|(position, _)| data.uvs.get(at(position)).copied());
+        MeshData {
+            positions: positions.collect(),
+            triangles: self.triangles.clone(),
+            normals: self.corners.iter().map(|(_, group)| normal(*group)).collect(),
+            uvs: uvs.collect(),
+        }
+    }
+}
+
+/// For each corner of each triangle the number of the group that it is smoothed with.
+fn groups(data: &MeshData, least_cosine: f64) -> Vec<u32> {
+    let places = places(data);
+    let place = |position: u32| places.get(position as usize).copied().unwrap_or(position);
+    let normal = |corner: u32| data.facet(corner as usize / 3).map(|facet| facet.winding().normalize_or_zero());
+    // Each edge of a triangle with an area, and the corners at its two ends, the lower place first.
+    let mut edges: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(3 * data.triangles.len());
+    for (first, triangle) in (0..).step_by(3).zip(&data.triangles) {
+        if normal(first).is_none_or(|normal| normal == DVec3::ZERO) {
+            continue;
+        }
+        let ends = triangle.map(place);
+        for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+            let corners = [first + from as u32, first + to as u32];
+            let [a, b] = [ends[from], ends[to]];
+            edges.push(if a <= b { ([a, b], corners) } else { ([b, a], [corners[1], corners[0]]) });
+        }
+    }
+    edges.sort_unstable();
+    let mut groups: Vec<u32> = (0..3 * data.triangles.len() as u32).collect();
+    for shared in edges.chunk_by(|a, b| a.0 == b.0) {
+        let [(_, one), (_, other)] = shared else { continue };
+        let (Some(a), Some(b)) = (normal(one[0]), normal(other[0])) else { continue };
+        // A little more, so that the angle itself is smoothed whatever its rounding.
+        if a.dot(b) >= least_cosine - 1e-6 {
+            (0..2).for_each(|end| join(&mut groups, one[end], other[end]));
+        }
+    }
+    (0..groups.len() as u32).map(|corner| root(&mut groups, corner)).collect()
+}
+
+/// For each position the lowest number of a position at the same place.
+fn places(data: &MeshData) -> Vec<u32> {
+    let bits = |position: u32| data.positions.get(position as usize).map(|at| (*at + 0.0).to_array().map(f32::to_bits));
+    let mut order: Vec<u32> = (0..data.positions.len() as u32).collect();
+    order.sort_unstable_by_key(|position| (bits(*position), *position));
+    let mut places = vec![0; order.len()];
+    for same in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
+        for position in same {
+            if let (Some(place), Some(first)) = (places.get_mut(*position as usize), same.first()) {
+                *place = *first;
+            }
+        }
+    }
+    places
+}
+
+/// The lowest corner of a group; the way there is shortened.
+fn root(groups: &mut [u32], mut corner: u32) -> u32 {
+    while let Some(next) = groups.get(corner as usize).copied()
+        && next != corner
+    {
+        let beyond = groups.get(next as usize).copied().unwrap_or(next);
+        if let Some(group) = groups.get_mut(corner as usize) {
+            *group = beyond;
+        }
+        corner = beyond;
+    }
+    corner
+}
+
+fn join(groups: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(groups, a), root(groups, b));
+    if let Some(group) = groups.get_mut(a.max(b) as usize) {
+        *group = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::testing::close3;
+    use juggler_math::{Vec2, Vec3};
+
+    /// A strip of quads bent by this angle at each of the lines between them, each corner written once.
+    fn strip(angles: &[f32]) -> MeshData {
+        let (mut at, mut turn) = (Vec3::ZERO, 0.0f32);
+        let mut data = MeshData::default();
+        let line = |data: &mut MeshData, at: Vec3| data.positions.extend([at, at + Vec3::Y]);
+        line(&mut data, at);
+        for (i, angle) in std::iter::once(&0.0).chain(angles).enumerate() {
+            turn += angle.to_radians();
+            let (sin, cos) = fun::sin_cos(turn);
+            at += Vec3::new(cos, 0.0, -sin);
+            line(&mut data, at);
+            let i = 2 * i as u32;
+            data.triangles.extend([[i, i + 2, i + 1], [i + 1, i + 2, i + 3]]);
+        }
+        data
+    }
+
+    fn smooth(data: MeshData, angle: f32) -> MeshData {
+        Creases::new(&data, angle).unwrap().smoothed(data)
+    }
+
+    #[test]
+    fn edges_up_to_the_angle_are_smooth_and_others_are_creases() {
+        let bent = smooth(strip(&[20.0, 60.0]), 30.0);
+        assert_eq!(bent.triangles.len(), 6);
+        // The line that is bent by 60 degrees is split.
+        assert_eq!(bent.positions.len(), 8 + 2);
+        bent.check().unwrap();
+        let normal_of = |triangle: usize, corner: usize| bent.normals[bent.triangles[triangle][corner] as usize];
+        let turned = |degrees: f32| {
+            let (sin, cos) = fun::sin_cos(degrees.to_radians());
+            Vec3::new(sin, 0.0, cos)
+        };
+        assert!(close3(normal_of(2, 1), turned(20.0), 1e-6), "before the crease");
+        assert!(close3(normal_of(4, 0), turned(80.0), 1e-6), "after the crease");
+        // Both corners of the smooth line have one normal between both sides, by areas; one has two triangles of one side.
+        for (triangle, corner) in [(0, 1), (2, 0)] {
+            let normal = normal_of(triangle, corner);
+            assert!(normal.dot(turned(10.0)) > 0.99 && (normal.length() - 1.0).abs() < 1e-6, "{normal}");
+        }
+        assert_eq!(normal_of(0, 1), normal_of(2, 0));
+        assert_eq!(smooth(strip(&[30.0]), 30.0).positions.len(), 6, "the angle itself is smooth");
+        assert_eq!(smooth(strip(&[30.1]), 30.0).positions.len(), 8);
+    }
+
+    #[test]
+    fn positions_at_one_place_are_smoothed_together_and_keep_their_coordinates() {
+        // Each triangle with corners of its own, as files without indices have them.
+        let whole = strip(&[20.0]);
+        let positions: Vec<Vec3> =
+            whole.triangles.as_flattened().iter().map(|at| whole.positions[*at as usize]).collect();
+        let uvs: Vec<Vec2> = (0..positions.len()).map(|i| Vec2::new(i as f32, 0.5)).collect();
+        let triangles = (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let soup = smooth(MeshData { positions, triangles, uvs: uvs.clone(), ..MeshData::default() }, 30.0);
+        assert_eq!((soup.positions.len(), soup.uvs), (12, uvs));
+        let welded = smooth(whole, 30.0);
+        for (soup_corner, corner) in soup.triangles.as_flattened().iter().zip(welded.triangles.as_flattened()) {
+            assert_eq!(soup.normals[*soup_corner as usize], welded.normals[*corner as usize]);
+        }
+    }
+
+    #[test]
+    fn flat_and_round_are_the_ends() {
+        let data = strip(&[20.0, 60.0, 170.0]);
+        let round = smooth(data.clone(), 180.0);
+        assert_eq!(round.positions.len(), data.positions.len());
+        let flat = smooth(data.clone(), 0.0);
+        for (number, corners) in flat.triangles.iter().enumerate() {
+            let normal = data.facet(number).unwrap().winding().normalize().as_vec3();
+            assert!(corners.iter().all(|corner| close3(flat.normals[*corner as usize], normal, 1e-5)));
+        }
+        let own = MeshData { normals: vec![Vec3::Y; data.positions.len()], ..data.clone() };
+        assert_eq!(smooth(own.clone(), 30.0), own, "a mesh with normals keeps them");
+        assert_eq!(Creases::new(&data, 181.0).err().unwrap().field, "crease_angle_degrees");
+        assert!(Creases::new(&MeshData { triangles: vec![[0, 1, 99]], ..data }, 30.0).is_err());
+    }
+}

@@ -1,0 +1,186 @@
+//! A checkerboard of two colours: squares on a surface or cubes in space.
+//!
+//! ```json
+//! {"checker": {"size": 25, "even": [1, 1, 0], "odd": [0, 1, 0], "space": "local", "axes": "xz"}}
+//! ```
+//!
+//! A point is even where the sum of ⌊(x − offset) / size⌋ over its `axes` is even. Across a flat surface
+//! leave out the axis that stands on it: there the cell would hang on rounding.
+
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+};
+use juggler_math::{Rgb, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A checkerboard of two colours.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Checker {
+    /// Edge of one cell, in units of `space`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub size: f32,
+    /// Colour of the cell on the positive side of `offset`.
+    pub even: Input<Rgb>,
+    /// Colour of its neighbours.
+    pub odd: Input<Rgb>,
+    /// The coordinates that the cells divide.
+    pub space: Space,
+    /// Which of the coordinates count.
+    pub axes: Axes,
+    /// A corner of the cells.
+    #[schemars(with = "[f32; 3]")]
+    pub offset: Vec3,
+}
+
+/// Some of the three coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// All: cubes; over (u, v): squares.
+    #[default]
+    Xyz,
+    /// Squares on level ground.
+    Xz,
+    /// Squares on a wall that faces z.
+    Xy,
+    /// Squares on a wall that faces x.
+    Yz,
+}
+
+impl Default for Checker {
+    fn default() -> Self {
+        Self {
+            size: 1.0,
+            even: Rgb::splat(0.8).into(),
+            odd: Rgb::splat(0.2).into(),
+            space: Space::Uv,
+            axes: Axes::Xyz,
+            offset: Vec3::ZERO,
+        }
+    }
+}
+
+/// Whether `x` lies in an odd cell of edge `size`: whether ⌊x / size⌋ is odd. Divides in double precision,
+/// so neighbouring floats fall into the right cells even where coordinates exceed the size by millions.
+#[inline]
+pub fn is_odd_cell(x: f32, size: f32) -> bool {
+    let cells = f64::from(x) / f64::from(size);
+    // Truncation and a correction: a plain instruction, where `floor` may be a call.
+    let towards_zero = cells as i64;
+    (towards_zero ^ i64::from(cells < towards_zero as f64)) & 1 == 1
+}
+
+impl Texture for Checker {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        if !(self.size > 0.0 && self.size.is_finite()) {
+            return Err(InvalidTexture::new("size", format!("`size` must be above 0, it is {}", self.size)));
+        }
+        check::color("even", &self.even)?;
+        check::color("odd", &self.odd)?;
+        check::vector("offset", self.offset)
+    }
+
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        Ok(Compiled::Checker(CompiledChecker {
+            size: self.size,
+            even: resolver.color("even", &self.even)?,
+            odd: resolver.color("odd", &self.odd)?,
+            space: self.space,
+            axes: self.axes,
+            offset: self.offset,
+        }))
+    }
+}
+
+/// A [`Checker`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledChecker {
+    size: f32,
+    even: Slot<Rgb>,
+    odd: Slot<Rgb>,
+    space: Space,
+    axes: Axes,
+    offset: Vec3,
+}
+
+impl CompiledChecker {
+    /// The colour at a point. Edges stay sharp whatever the footprint.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let p = at.point(self.space) - self.offset;
+        let odd = |x: f32| is_odd_cell(x, self.size);
+        let odd = match self.axes {
+            Axes::Xyz => odd(p.x) ^ odd(p.y) ^ odd(p.z),
+            Axes::Xz => odd(p.x) ^ odd(p.z),
+            Axes::Xy => odd(p.x) ^ odd(p.y),
+            Axes::Yz => odd(p.y) ^ odd(p.z),
+        };
+        textures.color(if odd { &self.odd } else { &self.even }, at)
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Checker {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let ground = Self { size: 107.0, space: Space::World, axes: Axes::Xz, ..Self::default() };
+        vec![Self::default(), ground, Self { space: Space::Local, offset: Vec3::ONE, ..Self::default() }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contract::color;
+    use juggler_math::Vec2;
+    use juggler_math::testing::Random;
+
+    #[test]
+    fn parity_is_that_of_whole_numbers() {
+        let mut random = Random::new(71);
+        for _ in 0..10_000 {
+            let size = (random.below(1000) + 1) as f32;
+            let x = (random.range(-1.0, 1.0) * 2f32.powi(random.below(53) as i32)).trunc();
+            let exact = (x as i64).div_euclid(size as i64) & 1 == 1;
+            assert_eq!(is_odd_cell(x, size), exact, "{x} {size}");
+        }
+    }
+
+    #[test]
+    fn borders_belong_to_the_upper_cell() {
+        let cells = [-2.0, -1.0, -1e-30, -0.0, 0.0, 1f32.next_down(), 1.0, 2.0].map(|x| is_odd_cell(x, 1.0));
+        assert_eq!(cells, [false, true, true, false, false, false, true, false]);
+        assert!(!is_odd_cell(107.0 * 6.0, 107.0) && is_odd_cell(107.0 * 7.0, 107.0));
+        for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN] {
+            assert_eq!(is_odd_cell(x, 1e-38), is_odd_cell(x, 1e-38));
+        }
+    }
+
+    #[test]
+    fn spaces_and_axes() {
+        let (uv, local) = (Vec2::new(1.5, 0.5), Vec3::new(0.5, 1.5, 2.5));
+        let at = Lookup { uv, local, world: Vec3::splat(1.5), ..Lookup::default() };
+        let odd = |space, axes, offset| {
+            let checker =
+                Checker { space, axes, offset, even: Rgb::BLACK.into(), odd: Rgb::WHITE.into(), ..Checker::default() };
+            color(&checker.into(), &at) == Rgb::WHITE
+        };
+        assert!(odd(Space::Uv, Axes::Xyz, Vec3::ZERO) && !odd(Space::Uv, Axes::Xyz, Vec3::X * 0.6));
+        assert!(odd(Space::Local, Axes::Xyz, Vec3::ZERO) && !odd(Space::Local, Axes::Xz, Vec3::ZERO));
+        assert!(odd(Space::Local, Axes::Xy, Vec3::ZERO) && odd(Space::Local, Axes::Yz, Vec3::ZERO));
+        assert!(odd(Space::World, Axes::Xyz, Vec3::ZERO) && !odd(Space::World, Axes::Xz, Vec3::ZERO));
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        let json = [
+            (r#"{"size": 0}"#, "size"),
+            (r#"{"odd": [0, 1e39, 0]}"#, "odd"),
+            (r#"{"offset": [1e39, 0, 0]}"#, "offset"),
+        ];
+        for (json, field) in json {
+            assert_eq!(serde_json::from_str::<Checker>(json).unwrap().check().unwrap_err().field, field);
+        }
+    }
+}

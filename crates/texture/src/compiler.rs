@@ -1,0 +1,289 @@
+//! From named descriptions to a table of numbers.
+
+use super::check;
+use super::{AnyTexture, Compiled, Image, Input, InvalidTexture, Pyramid, Slot, TextureId, TextureTable};
+use juggler_math::Rgb;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How deep textures may lie in each other.
+pub const MAX_NESTING: u32 = 32;
+
+/// How many lookups one lookup may lead to: a texture that names another twice, which names another twice, and so on,
+/// would take forever.
+pub const MAX_LOOKUPS: u32 = 1024;
+
+/// Why a texture cannot be compiled.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TextureError {
+    /// A number that cannot be.
+    #[error(transparent)]
+    Invalid(#[from] InvalidTexture),
+    /// A texture that the scene has not.
+    #[error("no texture is called `{name}`")]
+    Unknown {
+        /// The field that names it.
+        field: String,
+        /// The name.
+        name: String,
+    },
+    /// Textures within textures without end.
+    #[error("the texture `{name}` contains itself")]
+    Cycle {
+        /// The field that closes the circle.
+        field: String,
+        /// The name.
+        name: String,
+    },
+    /// A picture that cannot be read.
+    #[error("{0}")]
+    Image(String),
+    /// Textures within textures, too many.
+    #[error("textures lie more than {MAX_NESTING} deep in each other here")]
+    TooDeep,
+    /// Textures that name textures that name textures, several times each.
+    #[error("one lookup of this texture leads to more than {MAX_LOOKUPS} lookups of others")]
+    TooMany,
+}
+
+impl TextureError {
+    /// Path of the field at fault, inside the texture.
+    pub fn path(&self) -> &str {
+        match self {
+            Self::Invalid(InvalidTexture { field, .. }) | Self::Unknown { field, .. } | Self::Cycle { field, .. } => {
+                field
+            }
+            Self::Image(_) => "file",
+            Self::TooDeep | Self::TooMany => "",
+        }
+    }
+
+    /// Whether all that is wrong is a name that the scene has not.
+    pub fn is_unknown_name(&self) -> bool {
+        matches!(self, Self::Unknown { .. })
+    }
+}
+
+/// Where the pictures of image textures come from.
+pub trait Images {
+    /// The pixels of an image texture of that name; or why there are none.
+    fn image(&self, texture: &str, image: &Image) -> Result<Arc<Pyramid>, String>;
+}
+
+/// There are none.
+pub struct NoImages;
+
+impl Images for NoImages {
+    fn image(&self, _: &str, image: &Image) -> Result<Arc<Pyramid>, String> {
+        Err(format!("cannot read `{}`: no files are read here", image.file))
+    }
+}
+
+/// What asking a texture costs.
+#[derive(Clone, Copy, Debug)]
+struct Weight {
+    lookups: u32,
+    depth: u32,
+}
+
+impl Weight {
+    const ALONE: Self = Self { lookups: 1, depth: 1 };
+
+    /// Of a texture that asks the other `times` times.
+    fn asking(self, other: Self, times: u32) -> Self {
+        let lookups = self.lookups.saturating_add(other.lookups.saturating_mul(times));
+        Self { lookups, depth: self.depth.max(other.depth.saturating_add(1)) }
+    }
+}
+
+enum State {
+    Waiting(Box<AnyTexture>),
+    InProgress,
+    Done(TextureId),
+}
+
+/// Looks up what a texture names while it is compiled.
+pub struct Resolver<'a> {
+    states: BTreeMap<String, State>,
+    textures: Vec<(Compiled, Weight)>,
+    errors: Vec<(String, TextureError)>,
+    images: &'a dyn Images,
+    /// The one that is being compiled.
+    name: String,
+    /// How many textures are being compiled, one asked for by the other.
+    depth: u32,
+    /// What the one that is being compiled costs so far.
+    weight: Weight,
+}
+
+/// Compiles textures; see [`TextureTable::compile`].
+pub fn compile(
+    named: impl IntoIterator<Item = (String, AnyTexture)>,
+    images: &dyn Images,
+) -> (TextureTable, Vec<(String, TextureError)>) {
+    let states: BTreeMap<_, _> =
+        named.into_iter().map(|(name, texture)| (name, State::Waiting(Box::new(texture)))).collect();
+    let names: Vec<String> = states.keys().cloned().collect();
+    let mut resolver = Resolver {
+        states,
+        textures: Vec::new(),
+        errors: Vec::new(),
+        images,
+        name: String::new(),
+        depth: 0,
+        weight: Weight::ALONE,
+    };
+    let mut table = TextureTable::default();
+    for name in names {
+        // A name that is there and not in progress is found.
+        if let Ok(id) = resolver.by_name(&name, &name) {
+            table.names.insert(name, id);
+        }
+    }
+    table.textures = resolver.textures.into_iter().map(|(texture, _)| texture).collect();
+    resolver.errors.sort_by(|a, b| a.0.cmp(&b.0));
+    (table, resolver.errors)
+}
+
+impl Resolver<'_> {
+    /// The colour that `field` says or names.
+    pub fn color(&mut self, field: &str, input: &Input<Rgb>) -> Result<Slot<Rgb>, TextureError> {
+        check::color(field, input)?;
+        self.slot(field, input, 1)
+    }
+
+    /// The number that `field` says or names.
+    pub fn number(&mut self, field: &str, input: &Input<f32>) -> Result<Slot<f32>, TextureError> {
+        self.slot(field, input, 1)
+    }
+
+    /// The same for a field that is asked `times` times at each lookup.
+    pub fn slot<T: Clone>(&mut self, field: &str, input: &Input<T>, times: u32) -> Result<Slot<T>, TextureError> {
+        match input {
+            Input::Value(value) => Ok(Slot::Value(value.clone())),
+            Input::Texture(name) => {
+                let id = self.by_name(field, name)?;
+                let other = self.textures.get(id.0 as usize).map_or(Weight::ALONE, |(_, weight)| *weight);
+                self.weight = self.weight.asking(other, times);
+                Ok(Slot::Texture(id))
+            }
+        }
+    }
+
+    /// The pixels of an image.
+    pub fn image(&mut self, image: &Image) -> Result<Arc<Pyramid>, TextureError> {
+        self.images.image(&self.name, image).map_err(TextureError::Image)
+    }
+
+    /// An error inside a texture is charged to that texture, once, not to those who use it.
+    fn by_name(&mut self, field: &str, name: &str) -> Result<TextureId, TextureError> {
+        let Some(state) = self.states.get_mut(name) else {
+            return Err(TextureError::Unknown { field: field.to_owned(), name: name.to_owned() });
+        };
+        let texture = match std::mem::replace(state, State::InProgress) {
+            State::Waiting(texture) => texture,
+            State::InProgress => return Err(TextureError::Cycle { field: field.to_owned(), name: name.to_owned() }),
+            State::Done(id) => {
+                *state = State::Done(id);
+                return Ok(id);
+            }
+        };
+        let outer = std::mem::replace(&mut self.name, name.to_owned());
+        let compiled = self.compile(&texture);
+        self.name = outer;
+        let compiled = compiled.unwrap_or_else(|error| {
+            self.errors.push((name.to_owned(), error));
+            (Compiled::BLACK, Weight::ALONE)
+        });
+        let id = TextureId(u32::try_from(self.textures.len()).unwrap_or(u32::MAX));
+        self.textures.push(compiled);
+        self.states.insert(name.to_owned(), State::Done(id));
+        Ok(id)
+    }
+
+    fn compile(&mut self, texture: &AnyTexture) -> Result<(Compiled, Weight), TextureError> {
+        if self.depth >= MAX_NESTING {
+            return Err(TextureError::TooDeep);
+        }
+        texture.check()?;
+        let outer = std::mem::replace(&mut self.weight, Weight::ALONE);
+        self.depth += 1;
+        let compiled = texture.compile(self);
+        self.depth -= 1;
+        let weight = std::mem::replace(&mut self.weight, outer);
+        match compiled? {
+            _ if weight.depth > MAX_NESTING => Err(TextureError::TooDeep),
+            _ if weight.lookups > MAX_LOOKUPS => Err(TextureError::TooMany),
+            compiled => Ok((compiled, weight)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Lookup, Mix};
+
+    fn compile_json(json: &str) -> (TextureTable, Vec<String>) {
+        let named: BTreeMap<String, AnyTexture> = serde_json::from_str(json).unwrap();
+        let (table, errors) = compile(named, &NoImages);
+        (table, errors.iter().map(|(name, error)| format!("{name}: {}: {error}", error.path())).collect())
+    }
+
+    #[test]
+    fn textures_use_textures_whatever_their_order() {
+        let (table, errors) = compile_json(
+            r#"{"a": {"checker": {"even": "b", "odd": [1, 0, 0]}}, "b": {"mix": {"a": 0, "b": "c", "amount": 0.5}},
+                "c": {"constant": {"color": [0, 0.5, 1]}}}"#,
+        );
+        assert!(errors.is_empty(), "{errors:?}");
+        let slot = table.resolve("diffuse", &Input::<Rgb>::Texture("a".into())).unwrap();
+        assert_eq!(table.color(&slot, &Lookup::default()), Rgb::new(0.0, 0.25, 0.5));
+        let at = Lookup { uv: juggler_math::Vec2::new(1.5, 0.5), ..Lookup::default() };
+        assert_eq!(table.color(&slot, &at), Rgb::new(1.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn every_wrong_texture_is_reported_once_where_it_stands() {
+        let (table, errors) = compile_json(
+            r#"{"a": {"checker": {"even": "b"}}, "b": {"checker": {"size": -1}}, "c": {"mix": {"a": "b", "b": "nobody"}},
+                "d": {"ramp": {"input": "d"}}, "e": {"mix": {"a": "f"}}, "f": {"mix": {"b": "e"}}}"#,
+        );
+        let expected = [
+            "b: size: `size` must be above 0, it is -1",
+            "c: b: no texture is called `nobody`",
+            "d: input: the texture `d` contains itself",
+            "f: b: the texture `e` contains itself",
+        ];
+        assert_eq!(errors, expected);
+        assert_eq!(table.names().count(), 6);
+    }
+
+    fn chain(names: impl Iterator<Item = (String, String)>) -> Vec<(String, TextureError)> {
+        let mix = |next: String| Mix { a: Input::Texture(next), ..Mix::default() };
+        compile(names.map(|(name, next)| (name, mix(next).into())), &NoImages).1
+    }
+
+    #[test]
+    fn endless_chains_are_refused_in_either_order() {
+        let name = |i: u32| format!("{i:06}");
+        let down = chain((0..20_000).map(|i| (name(i), name(i + 1))));
+        let up = chain((1..20_000).map(|i| (name(i), name(i - 1))));
+        for errors in [down, up] {
+            assert!(errors.iter().any(|(_, error)| *error == TextureError::TooDeep), "{:?}", errors.first());
+        }
+        assert_eq!(chain((0..31).map(|i| (name(i), name(i + 1)))).len(), 1, "the last names nobody");
+    }
+
+    #[test]
+    fn a_lookup_cannot_become_a_million_lookups() {
+        let mix = |i: u32| {
+            let next = Input::Texture(format!("{}", i + 1));
+            Mix { a: next.clone(), b: next, ..Mix::default() }
+        };
+        let named = (0..20).map(|i| (format!("{i}"), mix(i).into()));
+        let last = ("20".to_owned(), Mix::default().into());
+        let errors = compile(named.chain([last]), &NoImages).1;
+        assert!(matches!(errors.as_slice(), [(_, TextureError::TooMany), ..]), "{errors:?}");
+    }
+}

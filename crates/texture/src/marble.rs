@@ -1,0 +1,143 @@
+//! Marble: parallel veins stirred by turbulence (Perlin, An Image Synthesizer, 1985).
+//!
+//! ```json
+//! {"marble": {"space": "local", "scale": 2, "distortion": 3, "stone": "#e8e4dc", "vein": "#302c38"}}
+//! ```
+//!
+//! With p a point of the pattern, a vein's share is (1/2 + 1/2 sin 2π(p.x + `distortion` · turbulence(p)))^`sharpness`.
+
+use super::compiled::Pair;
+use super::lattice::kept;
+use super::mapping::Map;
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Octaves, Resolver, Space, Texture, TextureError, TextureTable,
+    check,
+};
+use juggler_math::{Rgb, fun};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Marble: parallel veins, one a unit along x, stirred by turbulence.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Marble {
+    /// Colour between the veins.
+    pub stone: Input<Rgb>,
+    /// Colour of the veins.
+    pub vein: Input<Rgb>,
+    /// How far veins are stirred, in distances between them.
+    #[schemars(range(min = 0, max = 1000))]
+    pub distortion: f32,
+    /// How thin veins are: 1 as wide as the stone between them.
+    #[schemars(range(min = 0.01, max = 1000))]
+    pub sharpness: f32,
+    /// The turbulence that stirs them.
+    #[serde(flatten)]
+    pub octaves: Octaves,
+    /// Where the pattern lies.
+    #[serde(flatten)]
+    pub mapping: Mapping,
+}
+
+impl Default for Marble {
+    fn default() -> Self {
+        Self {
+            stone: Rgb::splat(0.85).into(),
+            vein: Rgb::new(0.2, 0.2, 0.25).into(),
+            distortion: 2.0,
+            sharpness: 4.0,
+            octaves: Octaves::default(),
+            mapping: Mapping::default(),
+        }
+    }
+}
+
+impl Texture for Marble {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        check::color("stone", &self.stone)?;
+        check::color("vein", &self.vein)?;
+        check::in_range("distortion", self.distortion, 0.0, 1000.0)?;
+        check::in_range("sharpness", self.sharpness, 0.01, 1000.0)?;
+        self.octaves.check()?;
+        self.mapping.check()
+    }
+
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        let colors = Pair { low: resolver.color("stone", &self.stone)?, high: resolver.color("vein", &self.vein)? };
+        let Self { distortion, sharpness, octaves, .. } = *self;
+        let mean = (0..256).map(|i| profile((i as f32 + 0.5) / 256.0, sharpness)).sum::<f32>() / 256.0;
+        let map = self.mapping.compile(Space::Local);
+        Ok(Compiled::Marble(CompiledMarble { colors, distortion, sharpness, mean, octaves, map }))
+    }
+}
+
+/// How much of a vein there is at a phase, in turns.
+fn profile(turns: f32, sharpness: f32) -> f32 {
+    fun::powf(0.5 + 0.5 * fun::sin_cos_turns(turns - turns.floor()).0, sharpness)
+}
+
+/// A [`Marble`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledMarble {
+    colors: Pair,
+    distortion: f32,
+    sharpness: f32,
+    /// Share of veins in the whole.
+    mean: f32,
+    octaves: Octaves,
+    map: Map,
+}
+
+impl CompiledMarble {
+    /// The colour at a point.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let place = self.map.place(at);
+        let sharp = profile(place.point.x + self.distortion * self.octaves.unsigned(place), self.sharpness);
+        let share = self.mean + (sharp - self.mean) * kept(place.width);
+        self.colors.at(share, textures, at)
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Marble {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let mapping = Mapping::of(Space::Local);
+        vec![Self::default(), Self { mapping, distortion: 1000.0, sharpness: 0.01, ..Self::default() }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contract::{keeps_its_mean, numbers};
+    use juggler_math::Vec3;
+
+    #[test]
+    fn without_distortion_veins_are_straight() {
+        let json = r#"{"marble": {"space": "world", "distortion": 0, "sharpness": 2, "stone": 0, "vein": 1}}"#;
+        let read = numbers(json);
+        for (x, share) in [(0.25, 1.0), (0.75, 0.0), (0.0, 0.25), (-3.75, 1.0), (7.5, 0.25)] {
+            assert!((read(Vec3::new(x, 5.0 * x, -2.0), 0.0) - share).abs() < 1e-6, "{x}");
+        }
+        // The mean of (1/2 + 1/2 sin)² is 3/8.
+        assert!((read(Vec3::ZERO, 1e3) - 0.375).abs() < 1e-6);
+        keeps_its_mean(json, 0.01);
+    }
+
+    #[test]
+    fn distortion_stirs_and_keeps_the_mean() {
+        let json = r#"{"marble": {"space": "world", "distortion": 4, "stone": 0, "vein": 1}}"#;
+        let read = numbers(json);
+        let column: Vec<f32> = (0..50).map(|i| read(Vec3::new(0.25, i as f32 * 0.37, 0.1), 0.0)).collect();
+        assert!(column.iter().any(|v| *v < 0.1) && column.iter().any(|v| *v > 0.8), "{column:?}");
+        keeps_its_mean(json, 0.02);
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        for (json, field) in [(r#"{"sharpness": 0}"#, "sharpness"), (r#"{"distortion": -1}"#, "distortion")] {
+            assert_eq!(serde_json::from_str::<Marble>(json).unwrap().check().unwrap_err().field, field);
+        }
+    }
+}

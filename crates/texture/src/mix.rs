@@ -1,0 +1,163 @@
+//! Two textures or colours put together: mixed, added, multiplied and so on.
+//!
+//! ```json
+//! {"mix": {"a": "wood", "b": "#402010", "amount": "scratches", "mode": "multiply"}}
+//! ```
+//!
+//! The colour is a + amount · (f(a, b) − a), where f is the mode, in linear light and channel by channel (the separable blend
+//! modes of W3C, Compositing and Blending Level 1, section 9).
+
+use super::{Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Texture, TextureError, TextureTable, check};
+use juggler_math::Rgb;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Two textures or colours put together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Mix {
+    /// What there is.
+    pub a: Input<Rgb>,
+    /// What comes to it.
+    pub b: Input<Rgb>,
+    /// How much of it: 0 leaves `a` as it is; of a texture the luminance counts.
+    pub amount: Input<f32>,
+    /// How the two come together.
+    pub mode: MixMode,
+}
+
+/// How two colours a and b come together, channel by channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MixMode {
+    /// b.
+    #[default]
+    Mix,
+    /// a + b.
+    Add,
+    /// a − b, at least 0.
+    Subtract,
+    /// a · b.
+    Multiply,
+    /// a + b − a · b: lightens.
+    Screen,
+    /// How far apart they are.
+    Difference,
+    /// The lighter.
+    Lighten,
+    /// The darker.
+    Darken,
+}
+
+impl Default for Mix {
+    fn default() -> Self {
+        Self { a: Rgb::BLACK.into(), b: Rgb::WHITE.into(), amount: 0.5.into(), mode: MixMode::Mix }
+    }
+}
+
+impl MixMode {
+    fn of(self, a: f32, b: f32) -> f32 {
+        match self {
+            Self::Mix => b,
+            Self::Add => a + b,
+            Self::Subtract => (a - b).max(0.0),
+            Self::Multiply => a * b,
+            Self::Screen => a + b - a * b,
+            Self::Difference => (a - b).abs(),
+            Self::Lighten => a.max(b),
+            Self::Darken => a.min(b),
+        }
+    }
+}
+
+impl Texture for Mix {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        check::color("a", &self.a)?;
+        check::color("b", &self.b)?;
+        match self.amount {
+            Input::Value(amount) => check::in_range("amount", amount, 0.0, 1.0),
+            Input::Texture(_) => Ok(()),
+        }
+    }
+
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        let (a, b) = (resolver.color("a", &self.a)?, resolver.color("b", &self.b)?);
+        let amount = resolver.number("amount", &self.amount)?;
+        Ok(Compiled::Mix(CompiledMix { a, b, amount, mode: self.mode }))
+    }
+}
+
+/// A [`Mix`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledMix {
+    a: Slot<Rgb>,
+    b: Slot<Rgb>,
+    amount: Slot<f32>,
+    mode: MixMode,
+}
+
+impl CompiledMix {
+    /// The colour at a point. Amounts that come from textures are kept from 0 to 1.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let amount = textures.number(&self.amount, at).clamp(0.0, 1.0);
+        let a = textures.color(&self.a, at);
+        if amount <= 0.0 {
+            return a;
+        }
+        let b = textures.color(&self.b, at);
+        let channel = |a: f32, b: f32| {
+            let mixed = a + amount * (self.mode.of(a, b) - a);
+            // Products of products may leave the range of numbers.
+            if mixed.is_finite() { mixed } else { a }
+        };
+        Rgb::new(channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b))
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Mix {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let huge = Self { a: Rgb::splat(1e37).into(), b: Rgb::splat(-1e37).into(), ..Self::default() };
+        let modes = [MixMode::Multiply, MixMode::Screen, MixMode::Difference];
+        let mut examples = modes.map(|mode| Self { mode, ..huge.clone() }).to_vec();
+        examples.push(Self { b: Rgb::new(0.5, 0.25, 0.125).into(), a: Rgb::splat(0.1).into(), ..Self::default() });
+        examples
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contract::reader;
+
+    #[test]
+    fn modes_do_as_they_say() {
+        for (mode, red, green) in [
+            ("mix", 0.5, 0.25),
+            ("add", 0.75, 2.25),
+            ("subtract", 0.0, 1.75),
+            ("multiply", 0.125, 0.5),
+            ("screen", 0.625, 1.75),
+            ("difference", 0.25, 1.75),
+            ("lighten", 0.5, 2.0),
+            ("darken", 0.25, 0.25),
+        ] {
+            let at = |amount: f32| {
+                let json =
+                    format!(r#"{{"a": [0.25, 2, 0], "b": [0.5, 0.25, 0], "mode": "{mode}", "amount": {amount}}}"#);
+                reader(&format!(r#"{{"mix": {json}}}"#))(&Lookup::default())
+            };
+            assert_eq!(at(1.0), Rgb::new(red, green, 0.0), "{mode}");
+            assert_eq!(at(0.0), Rgb::new(0.25, 2.0, 0.0), "{mode}");
+            assert_eq!(at(0.5), Rgb::new((red + 0.25) * 0.5, (green + 2.0) * 0.5, 0.0), "{mode}");
+        }
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        for (json, field) in [(r#"{"amount": 1.5}"#, "amount"), (r#"{"b": 1e38}"#, "b")] {
+            assert_eq!(serde_json::from_str::<Mix>(json).unwrap().check().unwrap_err().field, field);
+        }
+    }
+}

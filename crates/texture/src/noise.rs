@@ -1,0 +1,94 @@
+//! Smooth random spots of one size (Perlin, Improving Noise, 2002).
+//!
+//! ```json
+//! {"noise": {"space": "local", "scale": 4, "low": "#203010", "high": "#80a040"}}
+//! ```
+
+use super::compiled::Pair;
+use super::mapping::Map;
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check,
+    lattice,
+};
+use juggler_math::Rgb;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Smooth random spots, about one unit of the pattern wide.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Noise {
+    /// Colour of the lowest places.
+    pub low: Input<Rgb>,
+    /// Colour of the highest places.
+    pub high: Input<Rgb>,
+    /// Another number, another noise.
+    pub seed: u32,
+    /// Where the pattern lies.
+    #[serde(flatten)]
+    pub mapping: Mapping,
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self { low: Rgb::BLACK.into(), high: Rgb::WHITE.into(), seed: 0, mapping: Mapping::default() }
+    }
+}
+
+impl Texture for Noise {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        check::color("low", &self.low)?;
+        check::color("high", &self.high)?;
+        self.mapping.check()
+    }
+
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
+        Ok(Compiled::Noise(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile(Space::Local) }))
+    }
+}
+
+/// A [`Noise`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledNoise {
+    colors: Pair,
+    seed: u32,
+    map: Map,
+}
+
+impl CompiledNoise {
+    /// The colour at a point: the middle of both where a footprint covers several spots.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let place = self.map.place(at);
+        let share = 0.5 + 0.5 * lattice::noise(place.point, self.seed) * lattice::kept(place.width);
+        self.colors.at(share, textures, at)
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Noise {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        let world = Self { low: Rgb::new(0.5, 0.1, 0.2).into(), high: Rgb::splat(0.7).into(), ..Self::default() };
+        vec![Self::default(), Self { mapping: Mapping::of(Space::World), seed: 5, ..world }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::contract::{keeps_its_mean, numbers};
+    use juggler_math::Vec3;
+
+    #[test]
+    fn it_is_the_middle_at_lattice_points_and_moves_with_the_mapping() {
+        let plain = numbers(r#"{"noise": {"space": "world"}}"#);
+        let mapped = numbers(r#"{"noise": {"space": "world", "scale": 3, "offset": [1, 2, 3]}}"#);
+        assert_eq!(plain(Vec3::new(3.0, -7.0, 12.0), 0.0), 0.5);
+        for p in [Vec3::new(0.3, 0.6, 0.1), Vec3::new(-5.2, 3.3, 0.9)] {
+            assert!((plain(p * 3.0, 0.0) - mapped(p + Vec3::new(1.0, 2.0, 3.0), 0.0)).abs() < 1e-4);
+            assert_ne!(plain(p, 0.0), 0.5);
+            assert_eq!((plain(p, 1.0), mapped(p, 0.3)), (0.5, 0.5));
+        }
+        keeps_its_mean(r#"{"noise": {"space": "world"}}"#, 0.005);
+    }
+}

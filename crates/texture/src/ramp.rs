@@ -1,0 +1,119 @@
+//! A number made a colour: the value of another texture looked up along stops.
+//!
+//! ```json
+//! {"ramp": {"input": "clouds", "interpolation": "smooth", "stops": [
+//!     {"position": 0.4, "color": "#3060c0"}, {"position": 0.6, "color": [1, 1, 1]}]}}
+//! ```
+//!
+//! Before the first and behind the last stop the colour stays.
+
+use super::gradient::{CompiledStops, check_stops};
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Stop, Texture, TextureError, TextureTable, check,
+};
+use juggler_math::Rgb;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A number made a colour.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Ramp {
+    /// The number: most often the name of a texture, of which the luminance counts.
+    pub input: Input<f32>,
+    /// The colours with their positions, in rising order; two at one position make a sharp edge.
+    #[schemars(length(min = 1))]
+    pub stops: Vec<Stop>,
+    /// How colours run from one stop to the next.
+    pub interpolation: Steps,
+}
+
+/// How colours run from one stop to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Steps {
+    /// Evenly, in linear light.
+    #[default]
+    Linear,
+    /// Without a bend at the stops.
+    Smooth,
+    /// Not at all: each colour stays up to the next stop.
+    Hold,
+}
+
+impl Default for Ramp {
+    fn default() -> Self {
+        let stops = vec![Stop::new(0.0, Rgb::BLACK), Stop::new(1.0, Rgb::WHITE)];
+        Self { input: 0.5.into(), stops, interpolation: Steps::Linear }
+    }
+}
+
+impl Texture for Ramp {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        if let Input::Value(value) = self.input {
+            check::in_range("input", value, f32::MIN, f32::MAX)?;
+        }
+        check_stops(&self.stops)
+    }
+
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        let input = resolver.number("input", &self.input)?;
+        let stops = CompiledStops::new(&self.stops, resolver)?;
+        Ok(Compiled::Ramp(CompiledRamp { input, stops, interpolation: self.interpolation }))
+    }
+}
+
+/// A [`Ramp`] with its names looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledRamp {
+    input: Slot<f32>,
+    stops: CompiledStops,
+    interpolation: Steps,
+}
+
+impl CompiledRamp {
+    /// The colour at a point.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let bend: fn(f32) -> f32 = match self.interpolation {
+            Steps::Linear => |share| share,
+            Steps::Smooth => |share| share * share * (3.0 - 2.0 * share),
+            Steps::Hold => |_| 0.0,
+        };
+        self.stops.at(textures.number(&self.input, at), bend, textures, at)
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Ramp {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { interpolation: Steps::Smooth, ..Self::default() }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contract::reader;
+
+    #[test]
+    fn numbers_become_colours() {
+        let at = |input: &str, interpolation: &str| {
+            let stops =
+                r#"[{"position": 0, "color": 1}, {"position": 2, "color": [3, 5, 9]}, {"position": 2, "color": 7}]"#;
+            let json = format!(r#"{{"input": {input}, "interpolation": "{interpolation}", "stops": {stops}}}"#);
+            reader(&format!(r#"{{"ramp": {json}}}"#))(&Lookup::default())
+        };
+        assert_eq!(at("-1", "linear"), Rgb::splat(1.0));
+        assert_eq!(at("0.5", "linear"), Rgb::new(1.5, 2.0, 3.0));
+        assert_eq!(at("0.5", "smooth"), Rgb::new(1.3125, 1.625, 2.25));
+        assert_eq!(at("1.9", "hold"), Rgb::splat(1.0));
+        assert_eq!(at("2", "hold"), Rgb::splat(7.0));
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        let wrong: Ramp = serde_json::from_str(r#"{"stops": []}"#).unwrap();
+        assert_eq!(wrong.check().unwrap_err().field, "stops");
+    }
+}

@@ -1,0 +1,151 @@
+//! A flat texture from three sides: seen along x, y and z, and blended by where the surface faces. No surface
+//! coordinates are needed, and nothing is stretched.
+//!
+//! ```json
+//! {"triplanar": {"texture": "planks", "space": "world", "scale": 0.5, "sharpness": 8}}
+//! ```
+//!
+//! With n the normal, side i weighs |nᵢ|^`sharpness` over the sum of all three (Geiss, Generating Complex Procedural Terrains
+//! Using the GPU, GPU Gems 3, 2007, section 1.5, with powers). Seen from outside, v points up (away for y), u to the right.
+
+use super::mapping::Map;
+use super::{
+    Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
+};
+use juggler_math::{Rgb, Vec2, Vec3, fun};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A flat texture from three sides, blended by where the surface faces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Triplanar {
+    /// The texture; where it asks for surface coordinates, it gets those of each side.
+    pub texture: Input<Rgb>,
+    /// How abruptly one side takes over from the other.
+    #[schemars(range(min = 0.1, max = 1000))]
+    pub sharpness: f32,
+    /// Where the sides lie; `space` is `local` or `world`, and stands for `local` when it is `uv`.
+    #[serde(flatten)]
+    pub mapping: Mapping,
+}
+
+impl Default for Triplanar {
+    fn default() -> Self {
+        Self { texture: Rgb::splat(0.5).into(), sharpness: 4.0, mapping: Mapping::default() }
+    }
+}
+
+impl Texture for Triplanar {
+    fn check(&self) -> Result<(), InvalidTexture> {
+        check::color("texture", &self.texture)?;
+        check::in_range("sharpness", self.sharpness, 0.1, 1000.0)?;
+        self.mapping.check()
+    }
+
+    fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
+        let space = self.mapping.space.filter(|space| *space != Space::Uv);
+        let map = Mapping { space, ..self.mapping }.compile(Space::Local);
+        let texture = resolver.slot("texture", &self.texture, 3)?;
+        Ok(Compiled::Triplanar(CompiledTriplanar { texture, sharpness: self.sharpness, map }))
+    }
+}
+
+/// A [`Triplanar`] with its name looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledTriplanar {
+    texture: Slot<Rgb>,
+    sharpness: f32,
+    map: Map,
+}
+
+impl CompiledTriplanar {
+    /// The colour at a point.
+    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let place = self.map.wide_place(at);
+        let normal = self.map.direction(if self.map.space == Space::World { at.normal } else { at.local_normal });
+        let (weights, p) = (self.weights(normal), place.point);
+        let facing = |n: f32| if n < 0.0 { -1.0 } else { 1.0 };
+        let sides = [
+            (weights.x, Vec2::new(-p.z * facing(normal.x), p.y)),
+            (weights.y, Vec2::new(p.x, -p.z * facing(normal.y))),
+            (weights.z, Vec2::new(p.x * facing(normal.z), p.y)),
+        ];
+        let side = |(weight, uv): (f32, Vec2)| {
+            let at = Lookup { uv, uv_footprint: place.width, ..*at };
+            textures.color(&self.texture, &at) * weight
+        };
+        sides.into_iter().filter(|(weight, _)| *weight > 0.0).map(side).fold(Rgb::BLACK, |sum, side| sum + side)
+    }
+
+    /// How much each side counts; together 1.
+    fn weights(&self, normal: Vec3) -> Vec3 {
+        let size = normal.abs();
+        // Against the largest, so that no power vanishes with all others.
+        let size = size / size.max_element();
+        if !size.is_finite() {
+            return Vec3::Y;
+        }
+        let weights = Vec3::from(size.to_array().map(|v| fun::powf(v, self.sharpness)));
+        weights / weights.element_sum()
+    }
+}
+
+#[cfg(any(test, feature = "testing"))]
+impl Triplanar {
+    /// For the contract tests.
+    pub fn examples() -> Vec<Self> {
+        vec![Self::default(), Self { mapping: Mapping::of(Space::World), sharpness: 1000.0, ..Self::default() }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::AnyTexture;
+
+    fn read(json: &str, at: &Lookup) -> Rgb {
+        let uv: AnyTexture = serde_json::from_str(r#"{"uv": {}}"#).unwrap();
+        let table = TextureTable::new([("uv".into(), uv), ("t".into(), serde_json::from_str(json).unwrap())]);
+        table.color(&table.resolve("t", &Input::Texture("t".into())).unwrap(), at)
+    }
+
+    #[test]
+    fn a_side_that_is_faced_is_all_there_is() {
+        let world = Vec3::new(0.1, 0.2, 0.3);
+        let json = r#"{"triplanar": {"texture": "uv", "space": "world"}}"#;
+        for (normal, u, v) in [
+            (Vec3::X, 0.7, 0.2),
+            (-Vec3::X, 0.3, 0.2),
+            (Vec3::Y, 0.1, 0.7),
+            (-Vec3::Y, 0.1, 0.3),
+            (Vec3::Z, 0.1, 0.2),
+            (-Vec3::Z, 0.9, 0.2),
+        ] {
+            let at = Lookup { world, normal, ..Lookup::default() };
+            let color = read(json, &at);
+            assert!((color.r - u).abs() < 1e-6 && (color.g - v).abs() < 1e-6, "{normal}: {color:?}");
+        }
+    }
+
+    #[test]
+    fn weights_add_up_and_follow_their_power() {
+        let compiled = |sharpness| {
+            let map = Mapping::of(Space::World).compile(Space::Local);
+            CompiledTriplanar { texture: Slot::Value(Rgb::WHITE), sharpness, map }
+        };
+        let normal = Vec3::new(2.0, -1.0, 0.0) / 5f32.sqrt();
+        assert!((compiled(2.0).weights(normal) - Vec3::new(0.8, 0.2, 0.0)).abs().max_element() < 1e-6);
+        assert!((compiled(1.0).weights(Vec3::ONE) - Vec3::splat(1.0 / 3.0)).abs().max_element() < 1e-6);
+        assert_eq!(compiled(1000.0).weights(normal), Vec3::X);
+        assert_eq!(compiled(4.0).weights(Vec3::ZERO), Vec3::Y);
+    }
+
+    #[test]
+    fn object_space_has_a_normal_of_its_own() {
+        let local = Vec3::new(0.1, 0.2, 0.3);
+        let at = Lookup { local, normal: Vec3::X, local_normal: Vec3::Z, ..Lookup::default() };
+        let color = read(r#"{"triplanar": {"texture": "uv", "space": "local", "scale": 2}}"#, &at);
+        assert!((color.r - 0.2).abs() < 1e-6 && (color.g - 0.4).abs() < 1e-6, "{color:?}");
+    }
+}

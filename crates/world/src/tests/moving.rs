@@ -1,0 +1,65 @@
+//! Tests of what moves while the shutter is open.
+
+use super::{crowd, equals_brute_force, expanded_at, grove, large_mesh, rays, world_of};
+use crate::*;
+use juggler_math::testing::Random;
+use juggler_math::{Motion, Transform};
+use std::sync::Arc;
+
+/// Everything moves, instances of what moves too: straight, turning, growing.
+fn in_motion(random: &mut Random) -> World {
+    let mut moving = |mut objects: Vec<Object>| -> Vec<Object> {
+        for object in objects.iter_mut().filter(|object| object.is_bounded()) {
+            let start = object.motion.at(0.0);
+            let keys = (0..5).scan(start, |at, _| {
+                *at = at.then(&random.rotation()).then(&Transform::translation(random.point(4.0)));
+                Some(*at)
+            });
+            let (keys, size) = (keys.collect(), object.bounds().extent().length());
+            object.motion = Motion::through(keys).unwrap().smoothed(size);
+        }
+        objects
+    };
+    let mut objects = moving(crowd(&mut Random::new(41), 2, Some(MaterialId(0))));
+    let level = Arc::new(Level::new(moving(crowd(&mut Random::new(42), 1, None))));
+    let instance = Object { content: Content::Level(level), motion: Transform::IDENTITY.into(), material: None };
+    objects.extend(moving(vec![instance.clone(), instance.clone(), instance]));
+    objects.extend(crowd(&mut Random::new(43), 1, Some(MaterialId(2))));
+    objects.extend(moving(vec![Object::new(large_mesh(), Transform::IDENTITY, MaterialId(1))]));
+    world_of(objects)
+}
+
+#[test]
+fn what_moves_equals_brute_force_at_every_time() {
+    let world = in_motion(&mut Random::new(40));
+    assert!(world.moves() && !grove(&mut Random::new(24)).moves());
+    equals_brute_force(&world, 300);
+}
+
+/// What moves, met at some time, is met where it stands still there: the same place and normal.
+#[test]
+fn what_moves_is_met_where_it_is_at_the_time_of_the_ray() {
+    let mut random = Random::new(44);
+    let world = in_motion(&mut Random::new(40));
+    for round in 0..60 {
+        let time = random.f32();
+        let frozen = expanded_at(&world.top.objects, &Transform::IDENTITY, None, time);
+        let still = world_of(frozen);
+        assert!(!still.moves());
+        for mut ray in rays(&mut random, round, 8).into_iter().map(|ray| Ray { time, ..ray }) {
+            let (mut again, far) = (ray, 1e-3);
+            let (moving, standing) = (world.closest(&mut ray), still.closest(&mut again));
+            if moving.is_some() && standing.is_some() && (moving.hit.t - standing.hit.t).abs() < far {
+                let (a, b) = (world.vertex(&ray, &moving).surface, still.vertex(&again, &standing).surface);
+                assert!(a.point.distance(b.point) < 0.01, "{a:?} {b:?}");
+            } else {
+                // Only at edges may one meet what the other misses.
+                let edge = |world: &World, hit: &WorldHit, ray: &Ray| {
+                    hit.is_some() && world.vertex(ray, hit).surface.normal.dot(ray.direction).abs() > 0.3
+                };
+                let both = edge(&world, &moving, &ray) && edge(&still, &standing, &again);
+                assert!(!both, "{moving:?} {standing:?}");
+            }
+        }
+    }
+}
