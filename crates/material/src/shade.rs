@@ -72,7 +72,6 @@ impl Shade {
     /// Shading of a surface that absorbs all light; the caller sets its frame. A function, not a
     /// constant: a constant would be copied whole, unused lobes included.
     #[inline(always)]
-    #[inline]
     pub fn black() -> Self {
         Self {
             emission: Rgb::BLACK,
