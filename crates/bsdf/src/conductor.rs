@@ -15,6 +15,7 @@ use super::energy::{self, Scramble};
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta};
 use super::{BsdfSample, Fresnel, Scatter};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
@@ -50,12 +51,6 @@ impl Conductor {
         conductor
     }
 
-    /// One alpha of its microfacets that stands for both.
-    #[inline]
-    pub(super) fn mean_alpha(&self) -> f32 {
-        self.ggx.mean_alpha()
-    }
-
     /// f |cos θi| of single scattering where Fresnel's share is 1.
     #[inline]
     pub(super) fn shape(&self, wo: Vec3, wi: Vec3) -> f32 {
@@ -80,20 +75,6 @@ impl Conductor {
         self.ggx.is_smooth()
     }
 
-    /// f |cos θi|, and the density per steradian.
-    #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        if wo.z <= 0.0 || wi.z <= 0.0 || self.is_smooth() {
-            return (Rgb::BLACK, 0.0);
-        }
-        let facing = self.ggx.mirror(wo, wi);
-        let single = self.fresnel.at(facing.cos) * facing.value;
-        if self.multiple.is_black() {
-            return (single, facing.pdf);
-        }
-        self.with_multiple(wo, wi, single, facing.value)
-    }
-
     /// Adds the lobe of what is scattered more than once to the value and the density of what is
     /// scattered once.
     fn with_multiple(&self, wo: Vec3, wi: Vec3, single: Rgb, density: f32) -> (Rgb, f32) {
@@ -104,23 +85,6 @@ impl Conductor {
     /// 1 - E.
     fn lost(&self, w: Vec3) -> f32 {
         energy::mirror_lost(self.ggx, w)
-    }
-
-    /// A direction by visible normals, or as often as single scattering loses light by what it loses.
-    #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
-        if wo.z <= 0.0 {
-            return None;
-        }
-        if self.is_smooth() {
-            return Some(self.mirrored(wo));
-        }
-        if !self.multiple.is_black() {
-            return self.sample_compensated(wo, u);
-        }
-        let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
-        let weight = self.fresnel.at(facing.cos) * (facing.value / facing.pdf);
-        Some(BsdfSample { wi, weight, pdf: facing.pdf, scatter: Scatter::Glossy, ior: 1.0 })
     }
 
     fn sample_compensated(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
@@ -140,19 +104,6 @@ impl Conductor {
 
     fn mirrored(&self, wo: Vec3) -> BsdfSample {
         delta(Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel.at(wo.z), 1.0)
-    }
-
-    /// What is mirrored once and, if compensated, more often.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
-        if wo.z <= 0.0 {
-            return Rgb::BLACK;
-        }
-        let single = self.single_albedo(wo);
-        if self.multiple.is_black() {
-            return single;
-        }
-        let average = energy::mirror_lost_average(self.ggx);
-        single + self.multiple * (self.lost(wo) * average * std::f32::consts::PI)
     }
 
     /// Albedo of single scattering. On a stretched surface, the angles of visible microfacets depend on the slopes along `wo`: a
@@ -178,13 +129,75 @@ impl Conductor {
         let tilt = |alpha: f32| cos + 0.5 * alpha * alpha * (1.0 - cos);
         cos * (tilt(alpha) / tilt(across)).sqrt()
     }
+}
+
+impl ScatteringLobe for Conductor {
+    /// One alpha of its microfacets that stands for both.
+    #[inline]
+    fn mean_alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
+    /// f |cos θi|, and the density per steradian.
+    #[inline]
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if wo.z <= 0.0 || wi.z <= 0.0 || self.is_smooth() {
+            return (Rgb::BLACK, 0.0);
+        }
+        let facing = self.ggx.mirror(wo, wi);
+        let single = self.fresnel.at(facing.cos) * facing.value;
+        if self.multiple.is_black() {
+            return (single, facing.pdf);
+        }
+        self.with_multiple(wo, wi, single, facing.value)
+    }
+
+    /// A direction by visible normals, or as often as single scattering loses light by what it loses.
+    #[inline]
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        if self.is_smooth() {
+            return Some(self.mirrored(wo));
+        }
+        if !self.multiple.is_black() {
+            return self.sample_compensated(wo, u);
+        }
+        let (wi, facing) = self.ggx.sample_mirror(wo, u)?;
+        let weight = self.fresnel.at(facing.cos) * (facing.value / facing.pdf);
+        Some(BsdfSample { wi, weight, pdf: facing.pdf, scatter: Scatter::Glossy, ior: 1.0 })
+    }
+
+    /// What is mirrored once and, if compensated, more often.
+    fn albedo(&self, wo: Vec3) -> Rgb {
+        if wo.z <= 0.0 {
+            return Rgb::BLACK;
+        }
+        let single = self.single_albedo(wo);
+        if self.multiple.is_black() {
+            return single;
+        }
+        let average = energy::mirror_lost_average(self.ggx);
+        single + self.multiple * (self.lost(wo) * average * std::f32::consts::PI)
+    }
 
     /// The mirror's, if it is smooth.
-    pub fn deltas(&self, wo: Vec3) -> Deltas {
+    fn deltas(&self, wo: Vec3) -> Deltas {
         let mut deltas = Deltas::new();
         if self.is_smooth() && wo.z > 0.0 {
             deltas.push(self.mirrored(wo));
         }
         deltas
+    }
+
+    #[inline]
+    fn is_specular(&self) -> bool {
+        self.is_smooth()
+    }
+
+    #[inline]
+    fn is_stretched(&self) -> bool {
+        !self.is_round()
     }
 }

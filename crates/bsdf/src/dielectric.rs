@@ -18,6 +18,7 @@ use super::energy::{self, InterfaceLoss, Scramble, Side};
 use super::ggx::Ggx;
 use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
 use super::{BsdfSample, Film, Scatter, choose, fresnel};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
@@ -119,12 +120,6 @@ impl Dielectric {
         Self { reflection, transmission, ..self }
     }
 
-    /// One alpha of its microfacets that stands for both.
-    #[inline]
-    pub(super) fn mean_alpha(&self) -> f32 {
-        self.ggx.mean_alpha()
-    }
-
     /// Whether it only mirrors and refracts, without spread.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -175,16 +170,6 @@ impl Dielectric {
         let average = if is_above { [above, below] } else { [below, above] };
         let through = through[usize::from(!is_above)];
         Some(Multiple { loss, sides, lost: loss.at(sides[0], wo), through, average })
-    }
-
-    /// f |cos θi|, and the density per steradian.
-    #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        if wo.z == 0.0 || wi.z == 0.0 || self.is_smooth() {
-            return (Rgb::BLACK, 0.0);
-        }
-        let up = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
-        self.eval_pdf_in(&self.view(wo), up)
     }
 
     #[inline]
@@ -239,28 +224,6 @@ impl Dielectric {
         (color * (density / scale), density)
     }
 
-    /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether it mirrors or refracts, as often as Fresnel's
-    /// equations say of it (PBR 4th ed., section 9.7.2). Without compensation, the sample carries the energy G2 / G1.
-    #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
-        if wo.z == 0.0 {
-            return None;
-        }
-        if self.is_smooth() {
-            let [mirrored, refracted] = self.both(wo);
-            return one_of_two(mirrored, refracted, u.x);
-        }
-        let view = self.view(wo);
-        let (wi, scatter) = self.pick(&view, u, choice)?;
-        let (value, pdf) = self.eval_pdf_in(&view, wi);
-        if pdf <= 0.0 {
-            return None;
-        }
-        let ior = if wi.z < 0.0 { view.ior } else { 1.0 };
-        let wi = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
-        Some(BsdfSample { wi, weight: value / pdf, pdf, scatter, ior })
-    }
-
     fn pick(&self, view: &View, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
         let so = self.ggx.stretch(view.wo);
         let (m, _) = self.ggx.sample(view.wo, so, u);
@@ -293,19 +256,6 @@ impl Dielectric {
             None => (-wo, Rgb::BLACK),
         };
         [mirrored, delta(wi, self.transmission * through, ior)]
-    }
-
-    /// What is mirrored and what goes through, each in its colour.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
-        if wo.z == 0.0 {
-            return Rgb::BLACK;
-        }
-        if self.is_smooth() {
-            let share = self.smooth_share(wo.z.abs(), self.ior_from(wo));
-            return self.reflection * share + self.transmission * (Rgb::WHITE - share);
-        }
-        let [mirrored, through] = self.parts(wo);
-        self.reflection * mirrored + self.transmission * through
     }
 
     /// The shares of light along `wo` that are mirrored and that go through, but for their colors.
@@ -369,12 +319,75 @@ impl Dielectric {
     pub(super) fn alpha(&self) -> Vec2 {
         self.ggx.alpha()
     }
+}
+
+impl ScatteringLobe for Dielectric {
+    /// One alpha of its microfacets that stands for both.
+    #[inline]
+    fn mean_alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
+    /// f |cos θi|, and the density per steradian.
+    #[inline]
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        if wo.z == 0.0 || wi.z == 0.0 || self.is_smooth() {
+            return (Rgb::BLACK, 0.0);
+        }
+        let up = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
+        self.eval_pdf_in(&self.view(wo), up)
+    }
+
+    /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether it mirrors or refracts, as often as Fresnel's
+    /// equations say of it (PBR 4th ed., section 9.7.2). Without compensation, the sample carries the energy G2 / G1.
+    #[inline]
+    fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        if self.is_smooth() {
+            let [mirrored, refracted] = self.both(wo);
+            return one_of_two(mirrored, refracted, u.x);
+        }
+        let view = self.view(wo);
+        let (wi, scatter) = self.pick(&view, u, choice)?;
+        let (value, pdf) = self.eval_pdf_in(&view, wi);
+        if pdf <= 0.0 {
+            return None;
+        }
+        let ior = if wi.z < 0.0 { view.ior } else { 1.0 };
+        let wi = if wo.z < 0.0 { Vec3::new(wi.x, wi.y, -wi.z) } else { wi };
+        Some(BsdfSample { wi, weight: value / pdf, pdf, scatter, ior })
+    }
+
+    /// What is mirrored and what goes through, each in its colour.
+    fn albedo(&self, wo: Vec3) -> Rgb {
+        if wo.z == 0.0 {
+            return Rgb::BLACK;
+        }
+        if self.is_smooth() {
+            let share = self.smooth_share(wo.z.abs(), self.ior_from(wo));
+            return self.reflection * share + self.transmission * (Rgb::WHITE - share);
+        }
+        let [mirrored, through] = self.parts(wo);
+        self.reflection * mirrored + self.transmission * through
+    }
 
     /// Mirrored and refracted, if it is smooth; not those of no weight.
-    pub fn deltas(&self, wo: Vec3) -> Deltas {
+    fn deltas(&self, wo: Vec3) -> Deltas {
         if !self.is_smooth() || wo.z == 0.0 {
             return Deltas::new();
         }
         self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+    }
+
+    #[inline]
+    fn is_specular(&self) -> bool {
+        self.is_smooth()
+    }
+
+    #[inline]
+    fn has_choice(&self) -> bool {
+        !self.is_smooth()
     }
 }

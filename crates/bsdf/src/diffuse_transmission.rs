@@ -6,6 +6,7 @@
 
 use super::lobe::sum;
 use super::{BsdfSample, Scatter, choose};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
 
@@ -41,10 +42,12 @@ impl DiffuseTransmission {
         let (r, t) = (sum(reflectance), sum(transmittance));
         if r + t > 0.0 { r / (r + t) } else { 0.5 }
     }
+}
 
+impl ScatteringLobe for DiffuseTransmission {
     /// f |cos θi|, and the density per steradian.
     #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let (side, pdf) = (wo.z * wi.z, wi.z.abs() * FRAC_1_PI);
         let shares = self.shares(wo);
         if side > 0.0 {
@@ -59,7 +62,7 @@ impl DiffuseTransmission {
 
     /// A direction by cosine, on either side.
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
         let (is_reflected, x) = choose(u.x, Self::reflected(self.shares(wo)));
         let wi = warp::cosine_hemisphere(Vec2::new(x, u.y));
         let wi = if is_reflected == (wo.z > 0.0) { wi } else { -wi };
@@ -69,7 +72,12 @@ impl DiffuseTransmission {
     }
 
     /// What comes out on either side.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z == 0.0 { Rgb::BLACK } else { self.reflectance + self.transmittance }
+    }
+
+    #[inline]
+    fn is_matt(&self) -> bool {
+        true
     }
 }

@@ -2,6 +2,7 @@
 //! light mirrored (Lafortune and Willems 1994). The same both ways; its whole share `specular` head on, less at a slant.
 
 use super::{BsdfSample, Scatter};
+use crate::ScatteringLobe;
 use juggler_math::{Frame, Rgb, Vec2, Vec3, fun};
 use std::f32::consts::TAU;
 
@@ -14,10 +15,10 @@ pub struct PhongHighlight {
     pub exponent: f32,
 }
 
-impl PhongHighlight {
+impl ScatteringLobe for PhongHighlight {
     /// f |cos θi|, and the density per steradian.
     #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let cos = wo.z * wi.z - wo.x * wi.x - wo.y * wi.y;
         if wo.z <= 0.0 || wi.z <= 0.0 || cos <= 0.0 {
             return (Rgb::BLACK, 0.0);
@@ -28,7 +29,7 @@ impl PhongHighlight {
 
     /// A direction around the mirrored one.
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
         let cos = fun::powf(1.0 - u.x, 1.0 / (self.exponent + 1.0));
         let radius = (1.0 - cos * cos).max(0.0).sqrt();
         let (sin, turn) = fun::sin_cos_turns(u.y);
@@ -39,7 +40,7 @@ impl PhongHighlight {
     }
 
     /// Head on everything; at a slant what is left of the lobe's cosine, by a rough fit.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
         }

@@ -1,6 +1,7 @@
 //! Light is spread evenly over all directions, whichever it comes from (Lambert 1760).
 
 use super::{BsdfSample, Scatter};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
 
@@ -11,10 +12,10 @@ pub struct Lambert {
     pub albedo: Rgb,
 }
 
-impl Lambert {
+impl ScatteringLobe for Lambert {
     /// f |cos θi|, and the density per steradian.
     #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return (Rgb::BLACK, 0.0);
         }
@@ -24,11 +25,21 @@ impl Lambert {
 
     /// A direction by cosine.
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
         let wi = warp::cosine_hemisphere(u);
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return None;
         }
         Some(BsdfSample { wi, weight: self.albedo, pdf: wi.z * FRAC_1_PI, scatter: Scatter::Diffuse, ior: 1.0 })
+    }
+
+    #[inline]
+    fn is_matt(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn albedo(&self, wo: Vec3) -> Rgb {
+        if wo.z > 0.0 { self.albedo } else { Rgb::BLACK }
     }
 }

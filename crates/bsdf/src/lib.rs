@@ -10,7 +10,7 @@
 //! Opaque lobes are black seen from z <= 0: who makes the `Bsdf` of a two-sided material turns the frame. Dielectrics
 //! see z < 0 as their inside.
 
-use juggler_math::{Rgb, Vec3};
+use juggler_math::{Rgb, Vec2, Vec3};
 
 pub mod conductor;
 pub mod cone;
@@ -39,22 +39,39 @@ mod contract;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 
-pub use conductor::Conductor;
 pub use curve::Fresnel;
-pub use dielectric::Dielectric;
-pub use diffuse_transmission::DiffuseTransmission;
 pub use film::Film;
-pub use highlight::PhongHighlight;
-pub use lambert::Lambert;
-pub use lobe::Lobe;
-pub use oren_nayar::OrenNayar;
+pub use lobe::{Deltas, ScatteringLobe};
 pub use phong::{Cone, Highlight, Phong};
 pub use plastic::Plastic;
 pub use principled::Principled;
-pub use sheen::Sheen;
 pub use sum::{Bsdf, MAX_DELTAS, MAX_LOBES};
-pub use thin::ThinDielectric;
-pub use whitted::Whitted;
+
+juggler_math::closed_set! {
+    /// Every lobe, a few of which make a [`Bsdf`].
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub enum Lobe: static ScatteringLobe {
+        lambert::Lambert,
+        conductor::Conductor,
+        dielectric::Dielectric,
+        thin::ThinDielectric,
+        oren_nayar::OrenNayar,
+        diffuse_transmission::DiffuseTransmission,
+        sheen::Sheen,
+        highlight::PhongHighlight,
+        whitted::Whitted,
+    }
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32);
+    fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample>;
+    fn albedo(&self, wo: Vec3) -> Rgb;
+    fn deltas(&self, wo: Vec3) -> Deltas;
+    fn is_specular(&self) -> bool;
+    fn has_choice(&self) -> bool;
+    fn is_matt(&self) -> bool;
+    fn is_diffuse(&self) -> bool;
+    fn mean_alpha(&self) -> f32;
+    fn is_stretched(&self) -> bool;
+}
 
 /// How a direction was scattered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,6 +5,7 @@
 //! Directional albedos are the paper's polynomial fit, so nothing needs an angle. Directions are picked by cosine.
 
 use super::{BsdfSample, Scatter};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -41,10 +42,12 @@ impl OrenNayar {
         let g = m * (0.057_108_53 + m * (0.491_881_87 + m * (-0.332_181_44 + m * 0.071_442_99)));
         Self::scale(self.roughness) * (1.0 + self.roughness * g)
     }
+}
 
+impl ScatteringLobe for OrenNayar {
     /// f |cos θi|, and the density per steradian.
     #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return (Rgb::BLACK, 0.0);
         }
@@ -57,19 +60,24 @@ impl OrenNayar {
 
     /// A direction by cosine.
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
         let wi = warp::cosine_hemisphere(u);
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter: Scatter::Diffuse, ior: 1.0 })
     }
 
     /// What comes out again.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 {
             return Rgb::BLACK;
         }
         let once = self.once(wo.z);
         let average = Self::scale(self.roughness) * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * self.roughness);
         self.albedo * once + self.multiple * ((1.0 - once) * (1.0 - average) * PI)
+    }
+
+    #[inline]
+    fn is_matt(&self) -> bool {
+        true
     }
 }

@@ -5,6 +5,7 @@
 //! [`Sheen::albedo`], which a table holds.
 
 use super::{BsdfSample, Scatter, energy};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3, fun, warp};
 use std::f32::consts::TAU;
 
@@ -45,9 +46,11 @@ impl Sheen {
         let power = if cos < 0.5 { self.curve(cos) } else { 2.0 * self.curve(0.5) - self.curve((1.0 - cos).max(0.0)) };
         fun::exp(power)
     }
+}
 
+impl ScatteringLobe for Sheen {
     /// f |cos θi|, and the density per steradian.
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return (Rgb::BLACK, 0.0);
         }
@@ -61,15 +64,20 @@ impl Sheen {
     }
 
     /// A direction, all equally likely.
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
         let wi = warp::uniform_hemisphere(u);
         let (value, pdf) = self.eval_pdf(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter: Scatter::Diffuse, ior: 1.0 })
     }
 
     /// What comes out again.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z <= 0.0 { Rgb::BLACK } else { self.color * energy::sheen(wo.z, self.alpha) }
+    }
+
+    #[inline]
+    fn is_diffuse(&self) -> bool {
+        true
     }
 }
 

@@ -339,13 +339,13 @@ impl Bsdf {
     /// Whether there is any delta.
     #[inline]
     pub fn has_specular(&self) -> bool {
-        self.lobes.iter().any(|one| one.lobe.has_specular())
+        self.lobes.iter().any(|one| one.lobe.is_specular())
     }
 
     /// Every delta with its full weight, not divided by a probability; `pdf` is 1.
     pub fn deltas(&self, wo: Vec3) -> ArrayVec<BsdfSample, MAX_DELTAS> {
         let mut deltas = ArrayVec::new();
-        for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.has_specular()) {
+        for (index, one) in self.lobes.iter().enumerate().filter(|(_, one)| one.lobe.is_specular()) {
             for delta in self.deltas_of_one(one, wo) {
                 let weight = one.weight * self.dimming(index, wo, delta.wi);
                 let delta = self.delta_above(BsdfSample { weight: delta.weight * weight, ..delta });

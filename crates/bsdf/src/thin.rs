@@ -10,6 +10,7 @@ use super::energy::Scramble;
 use super::ggx::{Facing, Ggx};
 use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
 use super::{BsdfSample, Film, Scatter, energy, fresnel};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
@@ -49,12 +50,6 @@ impl ThinDielectric {
         Self { reflection, transmission, ..self }
     }
 
-    /// One alpha of its microfacets that stands for both.
-    #[inline]
-    pub(super) fn mean_alpha(&self) -> f32 {
-        self.ggx.mean_alpha()
-    }
-
     /// Whether it only mirrors and lets through, without spread.
     #[inline]
     pub fn is_smooth(&self) -> bool {
@@ -86,9 +81,39 @@ impl ThinDielectric {
         2.0 * once / (1.0 + once)
     }
 
+    /// A direction above and how it is scattered, turned over by `choice` if light goes through.
+    fn pick(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
+        let mut random = Scramble::new(u, 0.0);
+        // Take the direction that a visible normal reflects, if compensated with probability G2 / G1.
+        let mut is_taken = |facing: &Facing| !self.compensated || random.unit() * facing.pdf < facing.value;
+        let once = self.ggx.sample_mirror(wo, u).filter(|(_, facing)| is_taken(facing));
+        let (wi, probability, scatter) = match once {
+            Some((wi, facing)) => (wi, self.chance(self.share(facing.cos)), Scatter::Glossy),
+            None if self.compensated => {
+                (energy::sample_mirror_lost(self.ggx, &mut random), self.average(), Scatter::Diffuse)
+            }
+            None => return None,
+        };
+        Some((if choice < probability { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
+    }
+
+    fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
+        let share = self.share(wo.z.abs());
+        let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
+        [mirrored, delta(-wo, self.transmission * (Rgb::WHITE - share), 1.0)]
+    }
+}
+
+impl ScatteringLobe for ThinDielectric {
+    /// One alpha of its microfacets that stands for both.
+    #[inline]
+    fn mean_alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
     /// f |cos θi|, and the density per steradian.
     #[inline]
-    pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         if wo.z == 0.0 || wi.z == 0.0 || self.is_smooth() {
             return (Rgb::BLACK, 0.0);
         }
@@ -111,7 +136,7 @@ impl ThinDielectric {
     /// A direction: `u` picks a microfacet, and `choice`, in [0, 1), whether light is mirrored by it or goes through, as often
     /// as R says there.
     #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }
@@ -126,30 +151,8 @@ impl ThinDielectric {
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, scatter, ior: 1.0 })
     }
 
-    /// A direction above and how it is scattered, turned over by `choice` if light goes through.
-    fn pick(&self, wo: Vec3, u: Vec2, choice: f32) -> Option<(Vec3, Scatter)> {
-        let mut random = Scramble::new(u, 0.0);
-        // Take the direction that a visible normal reflects, if compensated with probability G2 / G1.
-        let mut is_taken = |facing: &Facing| !self.compensated || random.unit() * facing.pdf < facing.value;
-        let once = self.ggx.sample_mirror(wo, u).filter(|(_, facing)| is_taken(facing));
-        let (wi, probability, scatter) = match once {
-            Some((wi, facing)) => (wi, self.chance(self.share(facing.cos)), Scatter::Glossy),
-            None if self.compensated => {
-                (energy::sample_mirror_lost(self.ggx, &mut random), self.average(), Scatter::Diffuse)
-            }
-            None => return None,
-        };
-        Some((if choice < probability { wi } else { Vec3::new(wi.x, wi.y, -wi.z) }, scatter))
-    }
-
-    fn both(&self, wo: Vec3) -> [BsdfSample; 2] {
-        let share = self.share(wo.z.abs());
-        let mirrored = delta(Vec3::new(-wo.x, -wo.y, wo.z), self.reflection * share, 1.0);
-        [mirrored, delta(-wo, self.transmission * (Rgb::WHITE - share), 1.0)]
-    }
-
     /// What is mirrored and what goes through, each in its colour.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         if wo.z == 0.0 {
             return Rgb::BLACK;
         }
@@ -169,10 +172,20 @@ impl ThinDielectric {
     }
 
     /// Mirrored and straight on, if it is smooth; not those of no weight.
-    pub fn deltas(&self, wo: Vec3) -> Deltas {
+    fn deltas(&self, wo: Vec3) -> Deltas {
         if !self.is_smooth() || wo.z == 0.0 {
             return Deltas::new();
         }
         self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+    }
+
+    #[inline]
+    fn is_specular(&self) -> bool {
+        self.is_smooth()
+    }
+
+    #[inline]
+    fn has_choice(&self) -> bool {
+        !self.is_smooth()
     }
 }

@@ -3,6 +3,7 @@
 
 use super::lobe::{Deltas, delta, one_of_two};
 use super::{BsdfSample, fresnel};
+use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
 
 /// Mirrored and transparent shares.
@@ -40,9 +41,16 @@ impl Whitted {
         let up = Vec3::new(-wo.x, -wo.y, wo.z);
         [delta(up, mirrored, 1.0), delta(wi.unwrap_or(-wo), through / (ior * ior), ior)]
     }
+}
+
+impl ScatteringLobe for Whitted {
+    #[inline]
+    fn eval_pdf(&self, _wo: Vec3, _wi: Vec3) -> (Rgb, f32) {
+        (Rgb::BLACK, 0.0)
+    }
 
     /// One of the two.
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, u: Vec2, _choice: f32) -> Option<BsdfSample> {
         if self.is_black_from(wo) {
             return None;
         }
@@ -51,7 +59,7 @@ impl Whitted {
     }
 
     /// What is mirrored and what goes through.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         if self.is_black_from(wo) {
             return Rgb::BLACK;
         }
@@ -60,10 +68,15 @@ impl Whitted {
     }
 
     /// Those of any weight.
-    pub fn deltas(&self, wo: Vec3) -> Deltas {
+    fn deltas(&self, wo: Vec3) -> Deltas {
         if self.is_black_from(wo) {
             return Deltas::new();
         }
         self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+    }
+
+    #[inline]
+    fn is_specular(&self) -> bool {
+        true
     }
 }

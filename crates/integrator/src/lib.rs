@@ -65,18 +65,3 @@ impl Default for AnyIntegrator {
         Classic::default().into()
     }
 }
-
-impl AnyIntegrator {
-    /// The name in the scene file and on the command line.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Classic(_) => "classic",
-            Self::Path(_) => "path",
-            Self::Direct(_) => "direct",
-            Self::AmbientOcclusion(_) => "ambient_occlusion",
-            Self::Albedo(_) => "albedo",
-            Self::Normals(_) => "normals",
-            Self::Depth(_) => "depth",
-        }
-    }
-}

@@ -103,19 +103,6 @@ juggler_math::closed_set! {
     }
 }
 
-impl AnyLight {
-    /// The name in the scene file.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Ambient(_) => "ambient",
-            Self::Area(_) => "area",
-            Self::Directional(_) => "directional",
-            Self::Point(_) => "point",
-            Self::Spot(_) => "spot",
-        }
-    }
-}
-
 /// Refuses a number outside `low..=high`, and what is no number.
 fn in_range(field: &'static str, value: f32, low: f32, high: f32) -> Result<(), InvalidLight> {
     let wrong = range::outside(field, value, low, high);

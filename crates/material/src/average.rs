@@ -43,7 +43,7 @@ impl MaterialTable {
             Some(Compiled::Phong(phong)) => {
                 Average { radiance: phong.eval(self.textures(), || view.lookup()).emission, ..Average::DARK }
             }
-            Some(Compiled::Physical(_)) | None => Average::DARK,
+            Some(Compiled::Scattering(_)) | None => Average::DARK,
             Some(Compiled::Boundary(_)) => Average { opacity: 0.0, ..Average::DARK },
             Some(Compiled::Checkerboard(board)) => of(board.pick(view.surface)),
             Some(Compiled::NormalMap(map)) => of(map.material),

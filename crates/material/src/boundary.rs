@@ -20,10 +20,6 @@ pub struct Boundary {
 }
 
 impl Material for Boundary {
-    fn kind(&self) -> &'static str {
-        "boundary"
-    }
-
     fn compile(&self, _resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         let medium = checked(&self.medium)?;
         Ok(Compiled::Boundary(Interior { ior: 1.0, priority: self.priority, medium }))

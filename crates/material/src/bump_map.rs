@@ -46,10 +46,6 @@ pub struct CompiledBumpMap {
 }
 
 impl Material for BumpMap {
-    fn kind(&self) -> &'static str {
-        "bump_map"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         super::input::check_number("height", &self.height, -1e6, 1e6)?;
         in_range("distance", self.distance, -1e6, 1e6)?;

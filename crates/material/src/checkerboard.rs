@@ -59,10 +59,6 @@ pub struct CompiledCheckerboard {
 }
 
 impl Material for Checkerboard {
-    fn kind(&self) -> &'static str {
-        "checkerboard"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         in_range("size", self.size, f32::MIN_POSITIVE, f32::MAX)?;
         let even = resolver.material("even", &self.even)?;

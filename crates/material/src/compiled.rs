@@ -2,30 +2,25 @@
 
 use super::bump_map::CompiledBumpMap;
 use super::checkerboard::CompiledCheckerboard;
-use super::conductor::CompiledConductor;
-use super::dielectric::CompiledDielectric;
-use super::diffuse::CompiledDiffuse;
 use super::emissive::CompiledEmissive;
 use super::mask::CompiledMask;
 use super::mix::CompiledMix;
 use super::normal_map::CompiledNormalMap;
 use super::phong::CompiledPhong;
-use super::plastic::CompiledPlastic;
-use super::principled::CompiledPrincipled;
-use super::translucent::CompiledTranslucent;
-use super::velvet::CompiledVelvet;
 use super::{MaterialId, View};
 use crate::medium::Interior;
 use juggler_bsdf::Bsdf;
 use juggler_texture::TextureTable;
+use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A material with all its names looked up.
 #[derive(Clone, Debug)]
 pub enum Compiled {
     /// The classic model.
     Phong(CompiledPhong),
-    /// Scatters as physics says.
-    Physical(Physical),
+    /// A scattering function alone.
+    Scattering(Arc<dyn ScatteringMaterial>),
     /// Two materials in alternating cells.
     Checkerboard(CompiledCheckerboard),
     /// One of two by chance.
@@ -42,104 +37,47 @@ pub enum Compiled {
     Boundary(Interior),
 }
 
-/// A material that is nothing but a scattering function.
-#[derive(Clone, Debug)]
-pub enum Physical {
-    /// Matte.
-    Diffuse(CompiledDiffuse),
-    /// Metal.
-    Conductor(CompiledConductor),
-    /// Glass.
-    Dielectric(CompiledDielectric),
-    /// Coated.
-    Plastic(CompiledPlastic),
-    /// Cloth.
-    Velvet(CompiledVelvet),
-    /// Paper.
-    Translucent(CompiledTranslucent),
-    /// What glTF describes.
-    Principled(Box<CompiledPrincipled>),
-}
+/// A material that is nothing but a scattering function, with its names looked up.
+pub trait ScatteringMaterial: Debug + Send + Sync {
+    /// Adds the lobes at a point to `bsdf`: in place, because a scattering function is large to
+    /// return.
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf);
 
-impl From<Physical> for Compiled {
-    fn from(physical: Physical) -> Self {
-        Self::Physical(physical)
-    }
-}
+    /// Whether the lobes differ from point to point.
+    fn is_textured(&self) -> bool;
 
-impl Physical {
-    /// Adds the lobes at a point to `bsdf`: in place, for a scattering function is large to return.
-    #[inline]
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
-        match self {
-            Self::Diffuse(diffuse) => diffuse.add_lobes(textures, view, bsdf),
-            Self::Conductor(conductor) => conductor.add_lobes(textures, view, bsdf),
-            Self::Dielectric(dielectric) => dielectric.add_lobes(textures, view, bsdf),
-            Self::Plastic(plastic) => plastic.add_lobes(textures, view, bsdf),
-            Self::Velvet(velvet) => velvet.add_lobes(textures, view, bsdf),
-            Self::Translucent(translucent) => translucent.add_lobes(textures, view, bsdf),
-            Self::Principled(principled) => principled.add_lobes(textures, view, bsdf),
-        }
+    /// Whether light passes through the surface.
+    fn is_transmissive(&self) -> bool {
+        false
     }
 
-    /// Whether light goes through it.
-    pub fn is_transmissive(&self) -> bool {
-        match self {
-            Self::Dielectric(_) | Self::Translucent(_) => true,
-            Self::Principled(principled) => principled.is_transmissive(),
-            Self::Diffuse(_) | Self::Conductor(_) | Self::Plastic(_) | Self::Velvet(_) => false,
-        }
+    /// Medium behind the surface, whose inside and outside then differ.
+    fn interior(&self) -> Option<Interior> {
+        None
     }
 
-    /// What is behind its surface, whose inside and outside then differ.
-    pub fn interior(&self) -> Option<Interior> {
-        match self {
-            Self::Dielectric(dielectric) => dielectric.interior,
-            Self::Principled(principled) => principled.interior,
-            Self::Diffuse(_) | Self::Conductor(_) | Self::Plastic(_) | Self::Velvet(_) | Self::Translucent(_) => None,
-        }
+    /// Rotation of the shading frame from u towards v, in whole turns; `None` where the rotation
+    /// makes no difference.
+    fn turns(&self, _textures: &TextureTable, _view: &View) -> Option<f32> {
+        None
     }
 
-    /// How far its frame is turned from u towards v, in whole turns; `None` where that makes no difference.
-    pub fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
-        match self {
-            Self::Conductor(conductor) => conductor.roughness.turns(textures, view),
-            Self::Dielectric(dielectric) => dielectric.roughness.turns(textures, view),
-            Self::Plastic(plastic) => plastic.roughness.turns(textures, view),
-            Self::Principled(principled) => principled.turns(textures, view),
-            Self::Diffuse(_) | Self::Velvet(_) | Self::Translucent(_) => None,
-        }
-    }
-
-    /// Whether it matters which way along the surface is which.
+    /// Whether scattering depends on the directions of u and v.
     fn is_stretched(&self) -> bool {
-        match self {
-            Self::Conductor(conductor) => conductor.roughness.is_stretched(),
-            Self::Dielectric(dielectric) => dielectric.roughness.is_stretched(),
-            Self::Plastic(plastic) => plastic.roughness.is_stretched(),
-            Self::Principled(principled) => principled.is_stretched(),
-            Self::Diffuse(_) | Self::Velvet(_) | Self::Translucent(_) => false,
-        }
-    }
-
-    fn is_textured(&self) -> bool {
-        match self {
-            Self::Diffuse(diffuse) => diffuse.is_textured(),
-            Self::Conductor(conductor) => conductor.is_textured(),
-            Self::Dielectric(dielectric) => dielectric.is_textured(),
-            Self::Plastic(plastic) => plastic.is_textured(),
-            Self::Velvet(velvet) => velvet.is_textured(),
-            Self::Translucent(translucent) => translucent.is_textured(),
-            Self::Principled(principled) => principled.is_textured(),
-        }
+        false
     }
 }
 
 impl Compiled {
+    /// Wraps a scattering function.
+    pub fn scattering(scattering: impl ScatteringMaterial + 'static) -> Self {
+        Self::Scattering(Arc::new(scattering))
+    }
+
     /// Whether it must know how the surface runs along its coordinates, the materials in it not counted.
     pub fn needs_tangents(&self) -> bool {
         match self {
-            Self::Physical(physical) => physical.is_stretched(),
+            Self::Scattering(scattering) => scattering.is_stretched(),
             Self::NormalMap(_) | Self::BumpMap(_) => true,
             _ => false,
         }
@@ -150,7 +88,7 @@ impl Compiled {
         match self {
             Self::NormalMap(_) | Self::BumpMap(_) => true,
             Self::Phong(phong) => phong.is_textured(),
-            Self::Physical(physical) => physical.is_textured(),
+            Self::Scattering(scattering) => scattering.is_textured(),
             Self::Checkerboard(_) | Self::Mix(_) => true,
             Self::Mask(mask) => mask.is_textured(),
             Self::Emissive(emissive) => emissive.is_textured(),
@@ -162,7 +100,7 @@ impl Compiled {
     pub fn interior(&self) -> Option<Interior> {
         match self {
             Self::Boundary(interior) => Some(*interior),
-            Self::Physical(physical) => physical.interior(),
+            Self::Scattering(scattering) => scattering.interior(),
             _ => None,
         }
     }
@@ -170,7 +108,7 @@ impl Compiled {
     /// The materials that it is made of.
     pub fn parts(&self) -> Vec<MaterialId> {
         match self {
-            Self::Phong(_) | Self::Physical(_) | Self::Boundary(_) => Vec::new(),
+            Self::Phong(_) | Self::Scattering(_) | Self::Boundary(_) => Vec::new(),
             Self::Checkerboard(board) => board.choices().to_vec(),
             Self::Mix(mix) => mix.choices().to_vec(),
             Self::Mask(mask) => vec![mask.material],

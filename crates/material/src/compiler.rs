@@ -52,7 +52,7 @@ impl MaterialCompiler {
         self.depth += 1;
         let compiled = if self.depth > MAX_NESTING { Err(MaterialError::TooDeep) } else { material.compile(self) };
         self.depth -= 1;
-        Ok(self.table.push(compiled.map_err(|error| error.within(material.kind()))?))
+        Ok(self.table.push(compiled.map_err(|error| error.within(material.name()))?))
     }
 
     /// Compiles the named materials that nobody has asked for yet, and gives the table; or, for every named

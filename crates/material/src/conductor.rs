@@ -9,7 +9,7 @@
 use super::error::in_range;
 use super::input::{check_share, share};
 use super::roughness::Roughness;
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use juggler_bsdf::metals::Metal;
 use juggler_bsdf::{Bsdf, Conductor as ConductorLobe, Fresnel};
 use juggler_math::Rgb;
@@ -132,10 +132,6 @@ enum Color {
 }
 
 impl Material for Conductor {
-    fn kind(&self) -> &'static str {
-        "conductor"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_share("reflectance", &self.reflectance)?;
         check_share("edge_tint", &self.edge_tint)?;
@@ -151,7 +147,7 @@ impl Material for Conductor {
         if !compiled.is_textured() {
             compiled.fixed = Some(compiled.at(textures, &Lookup::default()));
         }
-        Ok(Physical::Conductor(compiled).into())
+        Ok(Compiled::scattering(compiled))
     }
 }
 
@@ -182,15 +178,6 @@ impl Conductor {
 }
 
 impl CompiledConductor {
-    /// Adds the lobes at a point to `bsdf`.
-    #[inline]
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
-        match self.fixed {
-            Some(fixed) => bsdf.push(fixed),
-            None => bsdf.push(self.at(textures, &view.lookup())),
-        }
-    }
-
     fn at(&self, textures: &TextureTable, at: &Lookup) -> ConductorLobe {
         let fresnel = match &self.color {
             Color::Measured(fresnel) => *fresnel,
@@ -200,15 +187,32 @@ impl CompiledConductor {
         let alpha = self.roughness.alpha(textures, at);
         if self.compensated { ConductorLobe::compensated(fresnel, alpha) } else { ConductorLobe::new(fresnel, alpha) }
     }
+}
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+impl ScatteringMaterial for CompiledConductor {
+    #[inline]
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+        match self.fixed {
+            Some(fixed) => bsdf.push(fixed),
+            None => bsdf.push(self.at(textures, &view.lookup())),
+        }
+    }
+
+    fn is_textured(&self) -> bool {
         let colors = match &self.color {
             Color::Measured(_) => false,
             Color::Tinted(head_on, edge) => head_on.is_texture() || edge.is_texture(),
             Color::Schlick(head_on, _) => head_on.is_texture(),
         };
         colors || self.roughness.is_textured()
+    }
+
+    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
+        self.roughness.turns(textures, view)
+    }
+
+    fn is_stretched(&self) -> bool {
+        self.roughness.is_stretched()
     }
 }
 

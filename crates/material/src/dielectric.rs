@@ -7,7 +7,7 @@
 use super::error::in_range;
 use super::input::{check_share, share};
 use super::roughness::Roughness;
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use crate::medium::{Interior, Medium};
 use juggler_bsdf::{Bsdf, Dielectric as DielectricLobe, ThinDielectric};
 use juggler_math::Rgb;
@@ -75,10 +75,6 @@ pub struct CompiledDielectric {
 }
 
 impl Material for Dielectric {
-    fn kind(&self) -> &'static str {
-        "dielectric"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         in_range("ior", self.ior, 0.1, 10.0)?;
         check_share("reflection_tint", &self.reflection_tint)?;
@@ -86,22 +82,20 @@ impl Material for Dielectric {
         let medium = super::boundary::checked(&self.medium)?;
         let textures = resolver.textures();
         let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
-        Ok(Physical::Dielectric(CompiledDielectric {
+        Ok(Compiled::scattering(CompiledDielectric {
             ior: self.ior,
             roughness: Roughness::new(textures, roughness)?,
             reflection: textures.resolve("reflection_tint", &self.reflection_tint)?,
             transmission: textures.resolve("transmission_tint", &self.transmission_tint)?,
             compensated: self.energy_compensation,
             interior: (!self.thin).then_some(Interior { ior: self.ior, priority: self.priority, medium }),
-        })
-        .into())
+        }))
     }
 }
 
-impl CompiledDielectric {
-    /// Adds the lobes at a point to `bsdf`.
+impl ScatteringMaterial for CompiledDielectric {
     #[inline]
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
         let alpha = self.roughness.alpha(textures, &at);
         let (reflection, transmission) =
@@ -115,10 +109,25 @@ impl CompiledDielectric {
         bsdf.push(border(self.ior / view.around_ior, alpha).tinted(reflection, transmission));
     }
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+    fn is_textured(&self) -> bool {
         let colors = self.reflection.is_texture() || self.transmission.is_texture();
         colors || self.roughness.is_textured()
+    }
+
+    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
+        self.roughness.turns(textures, view)
+    }
+
+    fn is_stretched(&self) -> bool {
+        self.roughness.is_stretched()
+    }
+
+    fn is_transmissive(&self) -> bool {
+        true
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.interior
     }
 }
 

@@ -5,7 +5,7 @@
 //! ```
 
 use super::input::{check_number, check_share, fraction, share};
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use juggler_bsdf::{Bsdf, Lambert};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
@@ -36,23 +36,18 @@ pub struct CompiledDiffuse {
 }
 
 impl Material for Diffuse {
-    fn kind(&self) -> &'static str {
-        "diffuse"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_share("reflectance", &self.reflectance)?;
         check_number("roughness", &self.roughness, 0.0, 1.0)?;
         let textures = resolver.textures();
         let reflectance = textures.resolve("reflectance", &self.reflectance)?;
         let roughness = textures.resolve("roughness", &self.roughness)?;
-        Ok(Physical::Diffuse(CompiledDiffuse { reflectance, roughness }).into())
+        Ok(Compiled::scattering(CompiledDiffuse { reflectance, roughness }))
     }
 }
 
-impl CompiledDiffuse {
-    /// Adds the lobes at a point to `bsdf`.
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+impl ScatteringMaterial for CompiledDiffuse {
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         if let (Slot::Value(albedo), Slot::Value(0.0)) = (self.reflectance, self.roughness) {
             bsdf.push(Lambert { albedo });
             return;
@@ -61,8 +56,7 @@ impl CompiledDiffuse {
         bsdf.push_diffuse(share(textures, &self.reflectance, &at), fraction(textures, &self.roughness, &at), 1.0);
     }
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+    fn is_textured(&self) -> bool {
         self.reflectance.is_texture() || self.roughness.is_texture()
     }
 }

@@ -55,10 +55,6 @@ pub struct CompiledEmissive {
 }
 
 impl Material for Emissive {
-    fn kind(&self) -> &'static str {
-        "emissive"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_light("radiance", &self.radiance, "scale", self.scale)?;
         let radiance = resolver.textures().resolve("radiance", &self.radiance)?;

@@ -35,7 +35,7 @@ mod velvet;
 #[cfg(test)]
 mod contract;
 
-pub use compiled::{Compiled, Physical};
+pub use compiled::{Compiled, ScatteringMaterial};
 pub use compiler::{MAX_NESTING, MaterialCompiler};
 pub use emissive::{Glow, Sides};
 pub use error::MaterialError;
@@ -106,8 +106,6 @@ pub trait Resolver {
 
 /// A recipe.
 pub trait Material: Send + Sync {
-    /// Its name in JSON.
-    fn kind(&self) -> &'static str;
     /// Looks up every name, once.
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError>;
 }

@@ -41,10 +41,6 @@ pub struct CompiledMask {
 }
 
 impl Material for Mask {
-    fn kind(&self) -> &'static str {
-        "mask"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_number("opacity", &self.opacity, 0.0, 1.0)?;
         in_range("cutoff", self.cutoff.unwrap_or_default(), 0.0, 1.0)?;

@@ -37,10 +37,6 @@ pub struct CompiledMix {
 }
 
 impl Material for Mix {
-    fn kind(&self) -> &'static str {
-        "mix"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_number("amount", &self.amount, 0.0, 1.0)?;
         let amount = resolver.textures().resolve("amount", &self.amount)?;

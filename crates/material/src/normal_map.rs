@@ -49,10 +49,6 @@ pub struct CompiledNormalMap {
 }
 
 impl Material for NormalMap {
-    fn kind(&self) -> &'static str {
-        "normal_map"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         super::input::check_share("texture", &self.texture)?;
         check_number("strength", &self.strength, 0.0, STRONGEST)?;

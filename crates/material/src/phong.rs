@@ -154,10 +154,6 @@ struct Slots {
 }
 
 impl Material for Phong {
-    fn kind(&self) -> &'static str {
-        "phong"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         self.check()?;
         let textures = resolver.textures();

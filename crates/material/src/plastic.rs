@@ -7,7 +7,7 @@
 use super::error::in_range;
 use super::input::{check_number, check_share, fraction, share};
 use super::roughness::Roughness;
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use juggler_bsdf::{Bsdf, Plastic as PlasticLobes};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
@@ -66,10 +66,6 @@ pub struct CompiledPlastic {
 }
 
 impl Material for Plastic {
-    fn kind(&self) -> &'static str {
-        "plastic"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_share("reflectance", &self.reflectance)?;
         check_number("diffuse_roughness", &self.diffuse_roughness, 0.0, 1.0)?;
@@ -77,21 +73,19 @@ impl Material for Plastic {
         check_share("reflection_tint", &self.reflection_tint)?;
         let textures = resolver.textures();
         let roughness = [&self.roughness, &self.anisotropy, &self.anisotropy_rotation];
-        Ok(Physical::Plastic(CompiledPlastic {
+        Ok(Compiled::scattering(CompiledPlastic {
             reflectance: textures.resolve("reflectance", &self.reflectance)?,
             diffuse_roughness: textures.resolve("diffuse_roughness", &self.diffuse_roughness)?,
             ior: self.ior,
             roughness: Roughness::new(textures, roughness)?,
             reflection: textures.resolve("reflection_tint", &self.reflection_tint)?,
             nonlinear: self.nonlinear,
-        })
-        .into())
+        }))
     }
 }
 
-impl CompiledPlastic {
-    /// Adds the lobes at a point to `bsdf`.
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+impl ScatteringMaterial for CompiledPlastic {
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = view.lookup();
         PlasticLobes {
             albedo: share(textures, &self.reflectance, &at),
@@ -105,10 +99,17 @@ impl CompiledPlastic {
         .add_lobes(bsdf);
     }
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+    fn is_textured(&self) -> bool {
         let colors = self.reflectance.is_texture() || self.reflection.is_texture();
         colors || self.diffuse_roughness.is_texture() || self.roughness.is_textured()
+    }
+
+    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
+        self.roughness.turns(textures, view)
+    }
+
+    fn is_stretched(&self) -> bool {
+        self.roughness.is_stretched()
     }
 }
 

@@ -13,7 +13,7 @@ use super::error::in_range;
 use super::input::{check_color, check_light, check_number, check_share, fraction, light, share};
 use super::mask::CompiledMask;
 use super::roughness::{rotation_slot, turns};
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use crate::medium::{Interior, Medium};
 use juggler_bsdf::{Bsdf, Principled as PrincipledLobes};
 use juggler_math::{MAX_LIGHT, Rgb};
@@ -152,10 +152,6 @@ struct Slots {
 }
 
 impl Material for Principled {
-    fn kind(&self) -> &'static str {
-        "principled"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         self.check()?;
         let medium = super::boundary::checked(&self.medium)?;
@@ -163,7 +159,7 @@ impl Material for Principled {
         let compiled = self.surface(textures, medium)?;
         let emissive = textures.resolve("emissive", &self.emissive)?;
         let opacity = textures.resolve("opacity", &self.opacity)?;
-        let mut compiled = Compiled::from(Physical::Principled(Box::new(compiled)));
+        let mut compiled = Compiled::scattering(compiled);
         if self.glows() {
             let inner = resolver.within(compiled);
             compiled = Compiled::Emissive(CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner));
@@ -294,9 +290,8 @@ impl Slots {
     }
 }
 
-impl CompiledPrincipled {
-    /// Adds the lobes at a point to `bsdf`.
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+impl ScatteringMaterial for CompiledPrincipled {
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let relative_ior = self.fixed.ior / view.around_ior;
         if !self.is_textured() {
             return self.fixed.add_lobes(relative_ior, bsdf);
@@ -306,26 +301,26 @@ impl CompiledPrincipled {
         lobes.add_lobes(relative_ior, bsdf);
     }
 
-    /// Whether light may come through.
-    pub fn is_transmissive(&self) -> bool {
+    fn is_transmissive(&self) -> bool {
         let [.., transmission, diffuse_transmission] = self.slots.numbers;
         [transmission, diffuse_transmission].iter().any(|slot| !matches!(slot, Slot::Value(0.0)))
     }
 
-    /// Whether highlights are stretched somewhere.
-    pub fn is_stretched(&self) -> bool {
+    fn is_stretched(&self) -> bool {
         let [_, _, _, anisotropy, ..] = self.slots.numbers;
         !matches!(anisotropy, Slot::Value(0.0))
     }
 
-    /// How far the frame is turned from u towards v, in whole turns; `None` where that makes no difference.
-    pub fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
+    fn turns(&self, textures: &TextureTable, view: &View) -> Option<f32> {
         self.is_stretched().then(|| turns(textures, &self.rotation, view))
     }
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+    fn is_textured(&self) -> bool {
         self.slots.any_texture()
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.interior
     }
 }
 

@@ -1,7 +1,7 @@
 //! All materials of a world, ready to be asked.
 
 use super::shade::facing_normal;
-use super::{Compiled, Glow, MaterialId, Physical, Shade, View, lookup, tangent};
+use super::{Compiled, Glow, MaterialId, ScatteringMaterial, Shade, View, lookup, tangent};
 use crate::medium::{Interior, InteriorId};
 use juggler_bsdf::Phong as PhongLobe;
 use juggler_math::{Frame, Rgb};
@@ -115,7 +115,7 @@ impl MaterialTable {
         let glows = || compiled.parts().into_iter().filter_map(|part| self.facts(part).glow);
         match compiled {
             Compiled::Phong(phong) => phong.glow(),
-            Compiled::Physical(_) | Compiled::Boundary(_) => None,
+            Compiled::Scattering(_) | Compiled::Boundary(_) => None,
             Compiled::Emissive(emissive) => match glows().next() {
                 None => Some(emissive.glow()).filter(|glow| glow.radiance.is_none_or(|light| !light.is_black())),
                 Some(other) => Some(emissive.glow().and(other).somewhere()),
@@ -165,8 +165,8 @@ impl MaterialTable {
                     Self::classic(&phong.eval(&self.textures, || view.lookup()), &view, shade);
                     return;
                 }
-                Compiled::Physical(physical) => {
-                    self.physical(physical, &view, shade);
+                Compiled::Scattering(scattering) => {
+                    self.fill_scattering(&**scattering, &view, shade);
                     return;
                 }
                 Compiled::NormalMap(map) => {
@@ -200,16 +200,16 @@ impl MaterialTable {
     }
 
     /// What is nothing but a scattering function, in its frame.
-    fn physical(&self, physical: &Physical, view: &View, shade: &mut Shade) {
+    fn fill_scattering(&self, material: &dyn ScatteringMaterial, view: &View, shade: &mut Shade) {
         let mut normal = facing_normal(view, view.normal);
         let is_mapped = view.normal != view.surface.shading_normal;
-        if physical.interior().is_some() {
+        if material.interior().is_some() {
             let outwards = if view.is_outside() { normal } else { -normal };
             normal = if is_mapped { outwards } else { view.normal };
         }
-        shade.frame = tangent::frame(view, normal, physical.turns(&self.textures, view));
-        physical.add_lobes(&self.textures, view, &mut shade.bsdf);
-        shade.transmissive = physical.is_transmissive();
+        shade.frame = tangent::frame(view, normal, material.turns(&self.textures, view));
+        material.add_lobes(&self.textures, view, &mut shade.bsdf);
+        shade.transmissive = material.is_transmissive();
         if is_mapped {
             shade.set_geometric_normal(view.surface.normal);
         }
@@ -274,7 +274,7 @@ impl MaterialTable {
     /// Whether material `id` is a surface of its own, not made of others.
     #[inline]
     pub fn is_simple(&self, id: MaterialId) -> bool {
-        self.compiled(id).is_some_and(|compiled| matches!(compiled, Compiled::Phong(_) | Compiled::Physical(_)))
+        self.compiled(id).is_some_and(|compiled| matches!(compiled, Compiled::Phong(_) | Compiled::Scattering(_)))
     }
 
     /// Whether material `id` differs from place to place.

@@ -5,7 +5,7 @@
 //! ```
 
 use super::input::{check_share, share};
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use juggler_bsdf::{Bsdf, DiffuseTransmission};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Lookup, Slot, TextureTable};
@@ -37,10 +37,6 @@ pub struct CompiledTranslucent {
 }
 
 impl Material for Translucent {
-    fn kind(&self) -> &'static str {
-        "translucent"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_share("reflectance", &self.reflectance)?;
         check_share("transmittance", &self.transmittance)?;
@@ -55,22 +51,24 @@ impl Material for Translucent {
         let textures = resolver.textures();
         let reflectance = textures.resolve("reflectance", &self.reflectance)?;
         let transmittance = textures.resolve("transmittance", &self.transmittance)?;
-        Ok(Physical::Translucent(CompiledTranslucent { reflectance, transmittance }).into())
+        Ok(Compiled::scattering(CompiledTranslucent { reflectance, transmittance }))
     }
 }
 
-impl CompiledTranslucent {
-    /// Adds the lobes at a point to `bsdf`.
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+impl ScatteringMaterial for CompiledTranslucent {
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = if self.is_textured() { view.lookup() } else { Lookup::default() };
         let (back, through) = (share(textures, &self.reflectance, &at), share(textures, &self.transmittance, &at));
         let scale = (back + through).map(|both| 1.0 / both.max(1.0));
         bsdf.push(DiffuseTransmission { reflectance: back * scale, transmittance: through * scale, ior: 1.0 });
     }
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+    fn is_textured(&self) -> bool {
         self.reflectance.is_texture() || self.transmittance.is_texture()
+    }
+
+    fn is_transmissive(&self) -> bool {
+        true
     }
 }
 

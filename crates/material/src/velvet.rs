@@ -5,7 +5,7 @@
 //! ```
 
 use super::input::{check_number, check_share, fraction, share};
-use super::{Compiled, Material, MaterialError, Physical, Resolver, View};
+use super::{Compiled, Material, MaterialError, Resolver, ScatteringMaterial, View};
 use juggler_bsdf::{Bsdf, Sheen};
 use juggler_math::Rgb;
 use juggler_texture::{Input, Slot, TextureTable};
@@ -47,29 +47,23 @@ pub struct CompiledVelvet {
 }
 
 impl Material for Velvet {
-    fn kind(&self) -> &'static str {
-        "velvet"
-    }
-
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError> {
         check_share("sheen_color", &self.sheen_color)?;
         check_number("sheen_roughness", &self.sheen_roughness, 0.0, 1.0)?;
         check_share("reflectance", &self.reflectance)?;
         check_number("roughness", &self.roughness, 0.0, 1.0)?;
         let textures = resolver.textures();
-        Ok(Physical::Velvet(CompiledVelvet {
+        Ok(Compiled::scattering(CompiledVelvet {
             sheen_color: textures.resolve("sheen_color", &self.sheen_color)?,
             sheen_roughness: textures.resolve("sheen_roughness", &self.sheen_roughness)?,
             reflectance: textures.resolve("reflectance", &self.reflectance)?,
             roughness: textures.resolve("roughness", &self.roughness)?,
-        })
-        .into())
+        }))
     }
 }
 
-impl CompiledVelvet {
-    /// Adds the lobes at a point to `bsdf`.
-    pub fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
+impl ScatteringMaterial for CompiledVelvet {
+    fn add_lobes(&self, textures: &TextureTable, view: &View, bsdf: &mut Bsdf) {
         let at = view.lookup();
         let roughness = fraction(textures, &self.sheen_roughness, &at);
         let ground = share(textures, &self.reflectance, &at);
@@ -79,8 +73,7 @@ impl CompiledVelvet {
         }
     }
 
-    /// Whether it differs from place to place.
-    pub fn is_textured(&self) -> bool {
+    fn is_textured(&self) -> bool {
         let colors = self.sheen_color.is_texture() || self.reflectance.is_texture();
         colors || self.sheen_roughness.is_texture() || self.roughness.is_texture()
     }

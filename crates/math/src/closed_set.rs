@@ -1,11 +1,67 @@
-//! The one macro: a closed family of kinds.
+//! The macro of closed families of kinds, such as shapes: one kind is one file and two lines.
 
-/// Declares a family: the enum, its conversions, and the single `match`.
+/// Declares a family of kinds: an enum with a variant a kind, its conversions, and the dispatch of
+/// methods.
 ///
-/// `pub enum AnyShape: Shape { sphere::Sphere }` stands for everything that a new kind needs besides its
-/// own file and its `mod` line. Methods are called through the trait, so a new method needs no line here.
+/// `pub enum AnyShape: Shape { sphere::Sphere, ... }` declares descriptions, which scene files hold:
+/// the enum has JSON and a schema, and its methods are those of the trait `Shape`, called through
+/// `dyn Shape`. So a new method needs no line here. [`name`](Self::name) is a kind's name in JSON.
+///
+/// `pub enum Lobe: static ScatteringLobe { lambert::Lambert, ... } fn ...;` declares values of the
+/// inner loops: the enum has the methods that follow the list of kinds, each a `match` that calls
+/// the trait's method without a pointer in between.
 #[macro_export]
 macro_rules! closed_set {
+    ($(#[$attribute:meta])* $vis:vis enum $Set:ident: static $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }
+        $($method:tt)+
+    ) => {
+        $(pub use $file::$Kind;)+
+
+        $(#[$attribute])*
+        $vis enum $Set {
+            $(
+                #[allow(missing_docs, reason = "the kind's own documentation says it")]
+                $Kind($Kind)
+            ),+
+        }
+
+        $(impl From<$Kind> for $Set {
+            #[inline]
+            fn from(kind: $Kind) -> Self {
+                Self::$Kind(kind)
+            }
+        })+
+
+        $crate::closed_set! { @methods $Set $Trait {$($Kind)+} $($method)+ }
+    };
+
+    (@methods $Set:ident $Trait:ident $kinds:tt
+        $(fn $method:ident(&self $(, $argument:ident: $Argument:ty)*) -> $Result:ty;)+
+    ) => {
+        impl $Set {
+            $($crate::closed_set! {
+                @method $Trait $kinds ($($argument)*) fn $method(&self $(, $argument: $Argument)*) -> $Result;
+            })+
+        }
+    };
+
+    (@method $Trait:ident {$($Kind:ident)+} $arguments:tt
+        fn $method:ident(&self $(, $argument:ident: $Argument:ty)*) -> $Result:ty;
+    ) => {
+        #[doc = concat!("Calls [`", stringify!($Trait), "::", stringify!($method), "`] of the kind.")]
+        #[inline]
+        #[allow(dead_code, reason = "every method of the family can be called")]
+        pub fn $method(&self $(, $argument: $Argument)*) -> $Result {
+            match self {
+                $(Self::$Kind(kind) => $crate::closed_set!(@call $Trait $method kind $arguments)),+
+            }
+        }
+    };
+
+    (@call $Trait:ident $method:ident $kind:ident ($($argument:ident)*)) => {
+        $Trait::$method($kind $(, $argument)*)
+    };
+
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }) => {
         $(pub use $file::$Kind;)+
 
@@ -38,6 +94,16 @@ macro_rules! closed_set {
             }
         }
 
+        impl $Set {
+            /// Names of all kinds, as JSON has them, in the order of their declaration.
+            pub const NAMES: &'static [&'static str] = &[$($crate::kind_name!($Kind)),+];
+
+            /// Name of the kind, as JSON has it.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$Kind(_) => $crate::kind_name!($Kind)),+ }
+            }
+        }
+
         #[cfg(any(test, feature = "testing"))]
         #[allow(dead_code, reason = "families without contract tests do not ask")]
         impl $Set {
@@ -47,4 +113,57 @@ macro_rules! closed_set {
             }
         }
     };
+}
+
+/// Name of a type in snake case, such as `"thin_lens"` of `ThinLens`: a constant.
+#[macro_export]
+macro_rules! kind_name {
+    ($Kind:ident) => {{
+        const NAME: &str = stringify!($Kind);
+        const SNAKE: [u8; $crate::closed_set::snake_case_length(NAME)] = $crate::closed_set::snake_case(NAME);
+        const TEXT: &str = match core::str::from_utf8(&SNAKE) {
+            Ok(text) => text,
+            Err(_) => NAME,
+        };
+        TEXT
+    }};
+}
+
+/// Length of `name` in snake case.
+#[doc(hidden)]
+pub const fn snake_case_length(name: &str) -> usize {
+    let bytes = name.as_bytes();
+    let mut length = bytes.len();
+    let mut i = 1;
+    while i < bytes.len() {
+        length += bytes[i].is_ascii_uppercase() as usize;
+        i += 1;
+    }
+    length
+}
+
+/// `name`, a type's name in ASCII, in snake case.
+#[doc(hidden)]
+pub const fn snake_case<const LENGTH: usize>(name: &str) -> [u8; LENGTH] {
+    let bytes = name.as_bytes();
+    let mut snake = [b'_'; LENGTH];
+    let (mut i, mut end) = (0, 0);
+    while i < bytes.len() {
+        if i > 0 && bytes[i].is_ascii_uppercase() {
+            end += 1;
+        }
+        snake[end] = bytes[i].to_ascii_lowercase();
+        (i, end) = (i + 1, end + 1);
+    }
+    snake
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn names_are_in_snake_case() {
+        assert_eq!(kind_name!(Sphere), "sphere");
+        assert_eq!(kind_name!(ThinLens), "thin_lens");
+        assert_eq!(kind_name!(AmbientOcclusion), "ambient_occlusion");
+    }
 }

@@ -4,7 +4,8 @@
 //! Only scalar [`glam`] types are used (`Vec3`, not `Vec3A`): their sums and products run in one fixed
 //! order on every platform and are never fused. Sine, logarithm and friends come from [`fun`].
 
-mod closed_set;
+#[doc(hidden)]
+pub mod closed_set;
 
 pub mod aabb;
 pub mod color;

@@ -147,7 +147,7 @@ impl Holdings {
 
     /// Named materials within others are looked at under their own names.
     fn material(&mut self, material: &AnyMaterial, path: &Trail<'_>) {
-        let part = |is_light| Some(Part { path: path.into(), kind: material.kind(), is_light });
+        let part = |is_light| Some(Part { path: path.into(), kind: material.name(), is_light });
         match material {
             AnyMaterial::Phong(_) => self.has_phong = true,
             AnyMaterial::Emissive(emissive) => {
@@ -168,14 +168,7 @@ impl Holdings {
             AnyMaterial::Principled(principled) if principled.glows() => {
                 self.emitter = self.emitter.take().or_else(|| part(true));
             }
-            AnyMaterial::Principled(_)
-            | AnyMaterial::Diffuse(_)
-            | AnyMaterial::Conductor(_)
-            | AnyMaterial::Dielectric(_)
-            | AnyMaterial::Plastic(_)
-            | AnyMaterial::Velvet(_)
-            | AnyMaterial::Translucent(_)
-            | AnyMaterial::Boundary(_) => self.physical = self.physical.take().or_else(|| part(false)),
+            _ => self.physical = self.physical.take().or_else(|| part(false)),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! {"brick": {"scale": 4, "width": 0.5, "height": 0.25, "mortar_width": 0.02, "brick": "#a04030", "variation": 0.3}}
 //! ```
 
+use super::CompiledTexture;
 use super::lattice::{hash, kept, pulses};
 use super::mapping::{Map, Place};
 use super::{
@@ -13,6 +14,7 @@ use juggler_math::hash::unit_f32;
 use juggler_math::{Rgb, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A brick wall in the pattern's x and y.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -75,7 +77,7 @@ impl Texture for Brick {
         let (brick, mortar) = (resolver.color("brick", &self.brick)?, resolver.color("mortar", &self.mortar)?);
         let Self { width, height, mortar_width, shift, variation, seed, .. } = *self;
         let map = self.mapping.compile(Space::Uv);
-        Ok(Compiled::Brick(CompiledBrick { brick, mortar, width, height, mortar_width, shift, variation, seed, map }))
+        Ok(Arc::new(CompiledBrick { brick, mortar, width, height, mortar_width, shift, variation, seed, map }))
     }
 }
 
@@ -112,9 +114,10 @@ impl CompiledBrick {
         let random = 0.5 + (random - 0.5) * kept(place.width / self.width.min(self.height));
         (bricks, 1.0 - self.variation * random)
     }
+}
 
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledBrick {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let (bricks, bright) = self.at(self.map.place(at));
         let color =
             |share: f32, slot: &Slot<Rgb>| if share > 0.0 { textures.color(slot, at) * share } else { Rgb::BLACK };

@@ -7,12 +7,14 @@
 //! A point is even where the sum of ⌊(x − offset) / size⌋ over its `axes` is even. Across a flat surface
 //! leave out the axis that stands on it: there the cell would hang on rounding.
 
+use super::CompiledTexture;
 use super::{
     Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
 };
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A checkerboard of two colours.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -83,7 +85,7 @@ impl Texture for Checker {
     }
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Checker(CompiledChecker {
+        Ok(Arc::new(CompiledChecker {
             size: self.size,
             even: resolver.color("even", &self.even)?,
             odd: resolver.color("odd", &self.odd)?,
@@ -105,9 +107,8 @@ pub struct CompiledChecker {
     offset: Vec3,
 }
 
-impl CompiledChecker {
-    /// The colour at a point. Edges stay sharp whatever the footprint.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledChecker {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let p = at.point(self.space) - self.offset;
         let odd = |x: f32| is_odd_cell(x, self.size);
         let odd = match self.axes {

@@ -1,61 +1,28 @@
 //! Textures as shading asks them: names are numbers, and nothing is left to be worked out twice.
 
-use super::{Lookup, Slot, TextureTable};
-use super::{
-    brick, checker, dots, fbm, gradient, image, marble, mix, noise, ramp, triplanar, turbulence, uv, voronoi, wave,
-    wood,
-};
+use super::constant::CompiledConstant;
+use super::{Lookup, Pyramid, Slot, TextureTable};
 use juggler_math::Rgb;
+use std::fmt::Debug;
+use std::sync::Arc;
 
-/// What a description becomes.
-#[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the kind's own documentation says it")]
-pub enum Compiled {
-    Image(image::CompiledImage),
-    Constant(Slot<Rgb>),
-    Checker(checker::CompiledChecker),
-    Gradient(gradient::CompiledGradient),
-    Ramp(ramp::CompiledRamp),
-    Mix(mix::CompiledMix),
-    Noise(noise::CompiledNoise),
-    Fbm(fbm::CompiledFbm),
-    Turbulence(turbulence::CompiledTurbulence),
-    Marble(marble::CompiledMarble),
-    Wood(wood::CompiledWood),
-    Voronoi(voronoi::CompiledVoronoi),
-    Brick(brick::CompiledBrick),
-    Dots(dots::CompiledDots),
-    Wave(wave::CompiledWave),
-    Triplanar(triplanar::CompiledTriplanar),
-    Uv(uv::CompiledUv),
+/// A texture with its names looked up.
+pub trait CompiledTexture: Debug + Send + Sync {
+    /// Color at a point, linear light; finite. `textures` is the table that the texture belongs to.
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb;
+
+    /// Pixels of an image, if the texture is one.
+    fn pixels(&self) -> Option<&Arc<Pyramid>> {
+        None
+    }
 }
 
-impl Compiled {
-    /// What stands for a texture that is wrong.
-    pub const BLACK: Self = Self::Constant(Slot::Value(Rgb::BLACK));
+/// What a description becomes.
+pub type Compiled = Arc<dyn CompiledTexture>;
 
-    /// The colour at a point, linear light; finite. `textures` is the table that it belongs to.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        match self {
-            Self::Image(kind) => kind.eval(at),
-            Self::Constant(color) => textures.color(color, at),
-            Self::Checker(kind) => kind.eval(textures, at),
-            Self::Gradient(kind) => kind.eval(textures, at),
-            Self::Ramp(kind) => kind.eval(textures, at),
-            Self::Mix(kind) => kind.eval(textures, at),
-            Self::Noise(kind) => kind.eval(textures, at),
-            Self::Fbm(kind) => kind.eval(textures, at),
-            Self::Turbulence(kind) => kind.eval(textures, at),
-            Self::Marble(kind) => kind.eval(textures, at),
-            Self::Wood(kind) => kind.eval(textures, at),
-            Self::Voronoi(kind) => kind.eval(textures, at),
-            Self::Brick(kind) => kind.eval(textures, at),
-            Self::Dots(kind) => kind.eval(textures, at),
-            Self::Wave(kind) => kind.eval(textures, at),
-            Self::Triplanar(kind) => kind.eval(textures, at),
-            Self::Uv(kind) => kind.eval(at),
-        }
-    }
+/// Texture that stands for one that is wrong.
+pub fn black() -> Compiled {
+    Arc::new(CompiledConstant(Slot::Value(Rgb::BLACK)))
 }
 
 /// Two colours, looked up only as far as they are needed.

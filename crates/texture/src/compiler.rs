@@ -1,7 +1,7 @@
 //! From named descriptions to a table of numbers.
 
 use super::check;
-use super::{AnyTexture, Compiled, Image, Input, InvalidTexture, Pyramid, Slot, TextureId, TextureTable};
+use super::{AnyTexture, Compiled, Image, Input, InvalidTexture, Pyramid, Slot, TextureId, TextureTable, compiled};
 use juggler_math::Rgb;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -193,7 +193,7 @@ impl Resolver<'_> {
         self.name = outer;
         let compiled = compiled.unwrap_or_else(|error| {
             self.errors.push((name.to_owned(), error));
-            (Compiled::BLACK, Weight::ALONE)
+            (compiled::black(), Weight::ALONE)
         });
         let id = TextureId(u32::try_from(self.textures.len()).unwrap_or(u32::MAX));
         self.textures.push(compiled);

@@ -4,10 +4,12 @@
 //! {"constant": {"color": "#c0a060"}}
 //! ```
 
-use super::{Compiled, Input, InvalidTexture, Resolver, Texture, TextureError, check};
+use super::CompiledTexture;
+use super::{Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Texture, TextureError, TextureTable, check};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The same colour everywhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,7 +31,17 @@ impl Texture for Constant {
     }
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Constant(resolver.color("color", &self.color)?))
+        Ok(Arc::new(CompiledConstant(resolver.color("color", &self.color)?)))
+    }
+}
+
+/// A [`Constant`] with its name looked up.
+#[derive(Clone, Debug)]
+pub struct CompiledConstant(pub Slot<Rgb>);
+
+impl CompiledTexture for CompiledConstant {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        textures.color(&self.0, at)
     }
 }
 

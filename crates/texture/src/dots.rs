@@ -4,6 +4,7 @@
 //! {"dots": {"scale": 20, "radius": 0.3, "jitter": 1, "dot": "#ffffff", "ground": "#c02030"}}
 //! ```
 
+use super::CompiledTexture;
 use super::compiled::Pair;
 use super::lattice::{cell, hash, kept, numbers, smoothstep};
 use super::mapping::Map;
@@ -14,6 +15,7 @@ use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// Dots, one a cell of the pattern's grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -84,7 +86,7 @@ impl Texture for Dots {
             compiled.profile(r, 0.0) * size * radius / 64.0
         };
         compiled.mean = (0..64).map(shell).sum();
-        Ok(Compiled::Dots(compiled))
+        Ok(Arc::new(compiled))
     }
 }
 
@@ -109,9 +111,10 @@ impl CompiledDots {
         let inner = self.radius * (1.0 - self.softness) - 0.5 * width;
         1.0 - smoothstep(inner, self.radius + 0.5 * width, distance)
     }
+}
 
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledDots {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.place(at);
         let (cell, within) = cell(if self.flat { place.point.with_z(0.0) } else { place.point });
         let way = (numbers(hash(cell, self.seed)) - 0.5) * (self.jitter * (1.0 - 2.0 * self.radius));

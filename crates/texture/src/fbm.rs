@@ -5,11 +5,13 @@
 //! {"fbm": {"space": "local", "scale": 2, "octaves": 8, "gain": 0.6, "low": "#3060c0", "high": [1, 1, 1]}}
 //! ```
 
+use super::CompiledTexture;
 use super::heights::{CompiledHeights, Heights};
 use super::{Compiled, InvalidTexture, Lookup, Resolver, Texture, TextureError, TextureTable};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Noises of many sizes added up: clouds, dirt, rough ground.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,7 +28,7 @@ impl Texture for Fbm {
     }
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Fbm(CompiledFbm(self.heights.compile(resolver)?)))
+        Ok(Arc::new(CompiledFbm(self.heights.compile(resolver)?)))
     }
 }
 
@@ -34,9 +36,8 @@ impl Texture for Fbm {
 #[derive(Clone, Debug)]
 pub struct CompiledFbm(CompiledHeights);
 
-impl CompiledFbm {
-    /// The colour at a point; octaves that a footprint covers have faded.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledFbm {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         self.0.at(textures, at, |octaves, place| 0.5 + 0.5 * octaves.signed(place))
     }
 }

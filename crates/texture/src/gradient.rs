@@ -9,12 +9,14 @@
 //! for the radial shape. Colours are mixed in linear light; before the first and behind the last stop the
 //! colour stays.
 
+use super::CompiledTexture;
 use super::{
     Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
 };
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Colours that run into each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -135,7 +137,7 @@ impl Texture for Gradient {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let Self { space, start, end, shape, .. } = *self;
         let stops = CompiledStops::new(&self.stops, resolver)?;
-        Ok(Compiled::Gradient(CompiledGradient { stops, space, start, end, shape }))
+        Ok(Arc::new(CompiledGradient { stops, space, start, end, shape }))
     }
 }
 
@@ -157,9 +159,10 @@ impl CompiledGradient {
             GradientShape::Radial => from_start.length() / along.length(),
         }
     }
+}
 
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledGradient {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         self.stops.at(self.position(at.point(self.space)), |share| share, textures, at)
     }
 }

@@ -7,9 +7,10 @@
 //! The picture fills x and y of its pattern from 0 to 1, its lower left corner at the origin; over (u, v) that is once over the
 //! surface. Elsewhere it is seen along z.
 
+use super::CompiledTexture;
 use super::mapping::Map;
 use super::pixels::{Filter, Pyramid, Wrap};
-use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, check};
+use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable, check};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -109,7 +110,7 @@ impl Texture for Image {
     }
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Image(CompiledImage {
+        Ok(Arc::new(CompiledImage {
             pixels: resolver.image(self)?,
             channel: self.channel,
             invert: self.invert,
@@ -133,9 +134,8 @@ pub struct CompiledImage {
     map: Map,
 }
 
-impl CompiledImage {
-    /// The colour at a point.
-    pub fn eval(&self, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledImage {
+    fn eval(&self, _textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.wide_place(at);
         // Rows count from the top.
         let [r, g, b, a] =
@@ -151,9 +151,8 @@ impl CompiledImage {
         color.map(|v| if self.invert { 1.0 - v } else { v } * self.factor)
     }
 
-    /// The picture.
-    pub fn pixels(&self) -> &Arc<Pyramid> {
-        &self.pixels
+    fn pixels(&self) -> Option<&Arc<Pyramid>> {
+        Some(&self.pixels)
     }
 }
 

@@ -39,7 +39,7 @@ mod wood;
 mod contract;
 
 pub use checker::{Axes, is_odd_cell};
-pub use compiled::Compiled;
+pub use compiled::{Compiled, CompiledTexture};
 pub use compiler::{Images, MAX_LOOKUPS, MAX_NESTING, NoImages, Resolver, TextureError};
 pub use gradient::{GradientShape, Stop};
 pub use image::{Channel, ColorSpace};

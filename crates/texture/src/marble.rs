@@ -6,6 +6,7 @@
 //!
 //! With p a point of the pattern, a vein's share is (1/2 + 1/2 sin 2π(p.x + `distortion` · turbulence(p)))^`sharpness`.
 
+use super::CompiledTexture;
 use super::compiled::Pair;
 use super::lattice::kept;
 use super::mapping::Map;
@@ -16,6 +17,7 @@ use super::{
 use juggler_math::{Rgb, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Marble: parallel veins, one a unit along x, stirred by turbulence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,7 +69,7 @@ impl Texture for Marble {
         let Self { distortion, sharpness, octaves, .. } = *self;
         let mean = (0..256).map(|i| profile((i as f32 + 0.5) / 256.0, sharpness)).sum::<f32>() / 256.0;
         let map = self.mapping.compile(Space::Local);
-        Ok(Compiled::Marble(CompiledMarble { colors, distortion, sharpness, mean, octaves, map }))
+        Ok(Arc::new(CompiledMarble { colors, distortion, sharpness, mean, octaves, map }))
     }
 }
 
@@ -88,9 +90,8 @@ pub struct CompiledMarble {
     map: Map,
 }
 
-impl CompiledMarble {
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledMarble {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.place(at);
         let sharp = profile(place.point.x + self.distortion * self.octaves.unsigned(place), self.sharpness);
         let share = self.mean + (sharp - self.mean) * kept(place.width);

@@ -7,10 +7,12 @@
 //! The colour is a + amount · (f(a, b) − a), where f is the mode, in linear light and channel by channel (the separable blend
 //! modes of W3C, Compositing and Blending Level 1, section 9).
 
+use super::CompiledTexture;
 use super::{Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Texture, TextureError, TextureTable, check};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Two textures or colours put together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -83,7 +85,7 @@ impl Texture for Mix {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let (a, b) = (resolver.color("a", &self.a)?, resolver.color("b", &self.b)?);
         let amount = resolver.number("amount", &self.amount)?;
-        Ok(Compiled::Mix(CompiledMix { a, b, amount, mode: self.mode }))
+        Ok(Arc::new(CompiledMix { a, b, amount, mode: self.mode }))
     }
 }
 
@@ -96,9 +98,8 @@ pub struct CompiledMix {
     mode: MixMode,
 }
 
-impl CompiledMix {
-    /// The colour at a point. Amounts that come from textures are kept from 0 to 1.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledMix {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let amount = textures.number(&self.amount, at).clamp(0.0, 1.0);
         let a = textures.color(&self.a, at);
         if amount <= 0.0 {

@@ -4,6 +4,7 @@
 //! {"noise": {"space": "local", "scale": 4, "low": "#203010", "high": "#80a040"}}
 //! ```
 
+use super::CompiledTexture;
 use super::compiled::Pair;
 use super::mapping::Map;
 use super::{
@@ -13,6 +14,7 @@ use super::{
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Smooth random spots, about one unit of the pattern wide.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,7 +46,7 @@ impl Texture for Noise {
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
-        Ok(Compiled::Noise(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile(Space::Local) }))
+        Ok(Arc::new(CompiledNoise { colors, seed: self.seed, map: self.mapping.compile(Space::Local) }))
     }
 }
 
@@ -56,9 +58,8 @@ pub struct CompiledNoise {
     map: Map,
 }
 
-impl CompiledNoise {
-    /// The colour at a point: the middle of both where a footprint covers several spots.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledNoise {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.place(at);
         let share = 0.5 + 0.5 * lattice::noise(place.point, self.seed) * lattice::kept(place.width);
         self.colors.at(share, textures, at)

@@ -7,6 +7,7 @@
 //!
 //! Before the first and behind the last stop the colour stays.
 
+use super::CompiledTexture;
 use super::gradient::{CompiledStops, check_stops};
 use super::{
     Compiled, Input, InvalidTexture, Lookup, Resolver, Slot, Stop, Texture, TextureError, TextureTable, check,
@@ -14,6 +15,7 @@ use super::{
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A number made a colour.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -59,7 +61,7 @@ impl Texture for Ramp {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let input = resolver.number("input", &self.input)?;
         let stops = CompiledStops::new(&self.stops, resolver)?;
-        Ok(Compiled::Ramp(CompiledRamp { input, stops, interpolation: self.interpolation }))
+        Ok(Arc::new(CompiledRamp { input, stops, interpolation: self.interpolation }))
     }
 }
 
@@ -71,9 +73,8 @@ pub struct CompiledRamp {
     interpolation: Steps,
 }
 
-impl CompiledRamp {
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledRamp {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let bend: fn(f32) -> f32 = match self.interpolation {
             Steps::Linear => |share| share,
             Steps::Smooth => |share| share * share * (3.0 - 2.0 * share),

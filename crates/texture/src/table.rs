@@ -87,12 +87,8 @@ impl TextureTable {
 
     /// Bytes of the pictures that textures show, those that several show counted once.
     pub fn image_bytes(&self) -> usize {
-        let pixels = |texture: &Compiled| match texture {
-            Compiled::Image(image) => Some(Arc::clone(image.pixels())),
-            _ => None,
-        };
-        let pictures = self.textures.iter().filter_map(pixels);
-        let pictures: BTreeMap<usize, usize> = pictures.map(|p| (Arc::as_ptr(&p).addr(), p.bytes())).collect();
+        let pictures = self.textures.iter().filter_map(|texture| texture.pixels());
+        let pictures: BTreeMap<usize, usize> = pictures.map(|p| (Arc::as_ptr(p).addr(), p.bytes())).collect();
         pictures.values().sum()
     }
 

@@ -8,6 +8,7 @@
 //! With n the normal, side i weighs |nᵢ|^`sharpness` over the sum of all three (Geiss, Generating Complex Procedural Terrains
 //! Using the GPU, GPU Gems 3, 2007, section 1.5, with powers). Seen from outside, v points up (away for y), u to the right.
 
+use super::CompiledTexture;
 use super::mapping::Map;
 use super::{
     Compiled, Input, InvalidTexture, Lookup, Mapping, Resolver, Slot, Space, Texture, TextureError, TextureTable, check,
@@ -15,6 +16,7 @@ use super::{
 use juggler_math::{Rgb, Vec2, Vec3, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A flat texture from three sides, blended by where the surface faces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,7 +49,7 @@ impl Texture for Triplanar {
         let space = self.mapping.space.filter(|space| *space != Space::Uv);
         let map = Mapping { space, ..self.mapping }.compile(Space::Local);
         let texture = resolver.slot("texture", &self.texture, 3)?;
-        Ok(Compiled::Triplanar(CompiledTriplanar { texture, sharpness: self.sharpness, map }))
+        Ok(Arc::new(CompiledTriplanar { texture, sharpness: self.sharpness, map }))
     }
 }
 
@@ -60,8 +62,21 @@ pub struct CompiledTriplanar {
 }
 
 impl CompiledTriplanar {
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+    /// How much each side counts; together 1.
+    fn weights(&self, normal: Vec3) -> Vec3 {
+        let size = normal.abs();
+        // Against the largest, so that no power vanishes with all others.
+        let size = size / size.max_element();
+        if !size.is_finite() {
+            return Vec3::Y;
+        }
+        let weights = Vec3::from(size.to_array().map(|v| fun::powf(v, self.sharpness)));
+        weights / weights.element_sum()
+    }
+}
+
+impl CompiledTexture for CompiledTriplanar {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.wide_place(at);
         let normal = self.map.direction(if self.map.space == Space::World { at.normal } else { at.local_normal });
         let (weights, p) = (self.weights(normal), place.point);
@@ -76,18 +91,6 @@ impl CompiledTriplanar {
             textures.color(&self.texture, &at) * weight
         };
         sides.into_iter().filter(|(weight, _)| *weight > 0.0).map(side).fold(Rgb::BLACK, |sum, side| sum + side)
-    }
-
-    /// How much each side counts; together 1.
-    fn weights(&self, normal: Vec3) -> Vec3 {
-        let size = normal.abs();
-        // Against the largest, so that no power vanishes with all others.
-        let size = size / size.max_element();
-        if !size.is_finite() {
-            return Vec3::Y;
-        }
-        let weights = Vec3::from(size.to_array().map(|v| fun::powf(v, self.sharpness)));
-        weights / weights.element_sum()
     }
 }
 

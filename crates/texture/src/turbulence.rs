@@ -5,11 +5,13 @@
 //! {"turbulence": {"space": "local", "scale": 3, "octaves": 5, "low": "#301008", "high": "#ffc040"}}
 //! ```
 
+use super::CompiledTexture;
 use super::heights::{CompiledHeights, Heights};
 use super::{Compiled, InvalidTexture, Lookup, Octaves, Resolver, Texture, TextureError, TextureTable};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Folded noises of many sizes added up: sharp creases between round bulges.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,7 +28,7 @@ impl Texture for Turbulence {
     }
 
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Turbulence(CompiledTurbulence(self.heights.compile(resolver)?)))
+        Ok(Arc::new(CompiledTurbulence(self.heights.compile(resolver)?)))
     }
 }
 
@@ -34,9 +36,8 @@ impl Texture for Turbulence {
 #[derive(Clone, Debug)]
 pub struct CompiledTurbulence(CompiledHeights);
 
-impl CompiledTurbulence {
-    /// The colour at a point: `low` at the creases.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledTurbulence {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         self.0.at(textures, at, Octaves::unsigned)
     }
 }

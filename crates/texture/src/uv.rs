@@ -4,11 +4,13 @@
 //! {"uv": {"scale": 10}}
 //! ```
 
+use super::CompiledTexture;
 use super::mapping::Map;
-use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError};
+use super::{Compiled, InvalidTexture, Lookup, Mapping, Resolver, Space, Texture, TextureError, TextureTable};
 use juggler_math::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Coordinates as colours, to see how they run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,7 +27,7 @@ impl Texture for Uv {
     }
 
     fn compile(&self, _: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
-        Ok(Compiled::Uv(CompiledUv { map: self.mapping.compile(Space::Uv) }))
+        Ok(Arc::new(CompiledUv { map: self.mapping.compile(Space::Uv) }))
     }
 }
 
@@ -35,9 +37,8 @@ pub struct CompiledUv {
     map: Map,
 }
 
-impl CompiledUv {
-    /// The colour at a point.
-    pub fn eval(&self, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledUv {
+    fn eval(&self, _textures: &TextureTable, at: &Lookup) -> Rgb {
         let p = self.map.place(at).point;
         (p - p.floor()).to_array().into()
     }

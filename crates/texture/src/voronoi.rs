@@ -7,6 +7,7 @@
 //!
 //! Over (u, v) the points lie in the plane, otherwise in space.
 
+use super::CompiledTexture;
 use super::compiled::Pair;
 use super::lattice::{cell, hash, kept, numbers};
 use super::mapping::Map;
@@ -17,6 +18,7 @@ use juggler_math::hash::combine;
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Cells about scattered points, one a unit of the pattern.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -98,7 +100,7 @@ impl Texture for Voronoi {
         // Any 512 places will do for the mean.
         let share = |i| points.near(numbers(combine(9, i)) * 64.0).feature(feature);
         let mean = (0..512).map(share).sum::<f32>() / 512.0;
-        Ok(Compiled::Voronoi(CompiledVoronoi { colors, feature, points, mean, map }))
+        Ok(Arc::new(CompiledVoronoi { colors, feature, points, mean, map }))
     }
 }
 
@@ -185,9 +187,8 @@ pub struct CompiledVoronoi {
     map: Map,
 }
 
-impl CompiledVoronoi {
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledVoronoi {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.place(at);
         let kept = kept(place.width);
         if kept <= 0.0 {

@@ -6,6 +6,7 @@
 //!
 //! The phase is p.x or |p|, plus `distortion` · fbm(p); the colour follows its fraction by the profile.
 
+use super::CompiledTexture;
 use super::compiled::Pair;
 use super::lattice::{kept, pulses};
 use super::mapping::Map;
@@ -16,6 +17,7 @@ use super::{
 use juggler_math::{Rgb, fun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Waves: bands or rings, one a unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -92,14 +94,7 @@ impl Texture for Wave {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("low", &self.low)?, high: resolver.color("high", &self.high)? };
         let Self { shape, profile, distortion, octaves, .. } = *self;
-        Ok(Compiled::Wave(CompiledWave {
-            colors,
-            shape,
-            profile,
-            distortion,
-            octaves,
-            map: self.mapping.compile(Space::Uv),
-        }))
+        Ok(Arc::new(CompiledWave { colors, shape, profile, distortion, octaves, map: self.mapping.compile(Space::Uv) }))
     }
 }
 
@@ -128,9 +123,8 @@ impl WaveProfile {
     }
 }
 
-impl CompiledWave {
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+impl CompiledTexture for CompiledWave {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
         let place = self.map.place(at);
         let straight = match self.shape {
             WaveShape::Bands => place.point.x,

@@ -7,6 +7,7 @@
 //! Within each ring early wood darkens slowly towards late wood, and the next ring starts abruptly (Peachey, Solid Texturing
 //! of Complex Surfaces, 1985, has rings about an axis; the profile and the fibres are ours).
 
+use super::CompiledTexture;
 use super::compiled::Pair;
 use super::lattice::{kept, noise, smoothstep};
 use super::mapping::{Map, Place};
@@ -18,6 +19,7 @@ use juggler_math::hash::combine;
 use juggler_math::{Rgb, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Share of a ring that early wood takes.
 const EARLY: f32 = 0.8;
@@ -73,7 +75,7 @@ impl Texture for Wood {
     fn compile(&self, resolver: &mut Resolver<'_>) -> Result<Compiled, TextureError> {
         let colors = Pair { low: resolver.color("light", &self.light)?, high: resolver.color("dark", &self.dark)? };
         let Self { distortion, grain, octaves, .. } = *self;
-        Ok(Compiled::Wood(CompiledWood { colors, distortion, grain, octaves, map: self.mapping.compile(Space::Local) }))
+        Ok(Arc::new(CompiledWood { colors, distortion, grain, octaves, map: self.mapping.compile(Space::Local) }))
     }
 }
 
@@ -93,17 +95,6 @@ fn ring(at: f32) -> f32 {
 }
 
 impl CompiledWood {
-    /// The colour at a point.
-    pub fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
-        let place = self.map.place(at);
-        let p = place.point;
-        let bent = (p.x * p.x + p.z * p.z).sqrt() + self.distortion * self.octaves.signed(place);
-        let bent = if bent.is_finite() { bent } else { 0.0 };
-        let rings = 0.5 + (ring(bent - bent.floor()) - 0.5) * kept(place.width);
-        let share = rings + self.fibre(place);
-        self.colors.at(share.clamp(0.0, 1.0), textures, at)
-    }
-
     fn fibre(&self, place: Place) -> f32 {
         let kept = kept(place.width * FIBRES);
         let p = place.point * Vec3::new(FIBRES, FIBRES / SLENDER, FIBRES);
@@ -112,6 +103,18 @@ impl CompiledWood {
         } else {
             0.0
         }
+    }
+}
+
+impl CompiledTexture for CompiledWood {
+    fn eval(&self, textures: &TextureTable, at: &Lookup) -> Rgb {
+        let place = self.map.place(at);
+        let p = place.point;
+        let bent = (p.x * p.x + p.z * p.z).sqrt() + self.distortion * self.octaves.signed(place);
+        let bent = if bent.is_finite() { bent } else { 0.0 };
+        let rings = 0.5 + (ring(bent - bent.floor()) - 0.5) * kept(place.width);
+        let share = rings + self.fibre(place);
+        self.colors.at(share.clamp(0.0, 1.0), textures, at)
     }
 }
 

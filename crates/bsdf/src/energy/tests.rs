@@ -2,6 +2,7 @@
 //! `JUGGLER_BLESS=1 cargo test -p juggler-tracer tables_are_what_lobes_integrate_to`.
 
 use super::*;
+use crate::ScatteringLobe;
 use crate::Sheen;
 use crate::fresnel;
 use crate::ggx::Ggx;

@@ -23,6 +23,7 @@
 //! values of the returning lobe imply.
 
 use super::{Bsdf, Weighted, mean};
+use crate::ScatteringLobe;
 use crate::energy::Scramble;
 use crate::fresnel::reflect;
 use crate::lobe::Deltas;
@@ -86,7 +87,7 @@ impl Bsdf {
         let Some((glass, layers)) = self.lobes.split_last().filter(|(_, layers)| has_cover(layers)) else { return };
         let place = layers.len();
         let returned = match &glass.lobe {
-            Lobe::Thin(pane) => Weighted {
+            Lobe::ThinDielectric(pane) => Weighted {
                 role: Role::ReturnedByPane { glass: place },
                 ..Weighted::new(pane.tinted(Rgb::BLACK, color), weight)
             },

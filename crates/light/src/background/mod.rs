@@ -91,19 +91,6 @@ impl From<Rgb> for AnyBackground {
     }
 }
 
-impl AnyBackground {
-    /// The name in the scene file.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Solid(_) => "solid",
-            Self::Gradient(_) => "gradient",
-            Self::Dome(_) => "dome",
-            Self::Environment(_) => "environment",
-            Self::Sky(_) => "sky",
-        }
-    }
-}
-
 /// Refuses a color with a channel below 0 or above [`MAX_LIGHT`].
 fn check_color(field: &'static str, color: Rgb) -> Result<(), InvalidBackground> {
     color.to_array().iter().try_for_each(|channel| orientation::in_range(field, *channel, 0.0, MAX_LIGHT))
