@@ -1,10 +1,7 @@
 //! How much memory a mesh file will take, told before it is read: from its size, its head, and a look into a text here
 //! and there. Factors were measured (docs/benchmarks.md, "Memory").
 
-use super::ply::{self, Announced};
-use super::sniff::Format;
-use super::stl;
-use super::{ImportError, Limits};
+use super::{ImportError, Limits, format};
 use juggler_imaging::regular;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -22,7 +19,7 @@ const LOOK: u64 = 1 << 14;
 const BUILDING: u64 = 96;
 const BUILT: u64 = 64;
 /// Bytes a triangle, and a corner that is not yet known to be another's, while the file is read.
-const FACE: u64 = 12;
+pub(super) const FACE: u64 = 12;
 const CORNER: u64 = 12 + 4 + 10;
 
 /// What a mesh file will take.
@@ -36,18 +33,24 @@ pub struct Estimate {
     pub peak: u64,
 }
 
-/// What a file seems to hold.
+/// Estimated content of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Counts {
-    vertices: u64,
-    triangles: u64,
+pub(super) struct Counts {
+    pub vertices: u64,
+    pub triangles: u64,
     /// Bytes of a vertex: position, normal, surface coordinates.
-    vertex: u64,
+    pub vertex: u64,
     /// Bytes that are held while the file is read, beside the file and the mesh.
-    aside: u64,
+    pub aside: u64,
 }
 
 impl Counts {
+    /// Facets whose corners may all be different.
+    pub fn of_facets(facets: u64) -> Self {
+        let corners = facets.saturating_mul(3);
+        Self { vertices: corners, triangles: facets, vertex: 12, aside: corners.saturating_mul(CORNER - 12) }
+    }
+
     fn estimate(&self, file: u64) -> Estimate {
         let product = u64::saturating_mul;
         let mesh = product(self.vertices, self.vertex).saturating_add(product(self.triangles, FACE));
@@ -68,14 +71,20 @@ pub fn estimate(path: &Path) -> Result<Estimate, ImportError> {
         return Ok(Estimate::default());
     }
     let head = look(&mut file, 0, HEAD).map_err(failed)?;
-    let counts = match Format::of_head(&head, size).or_else(|| Format::of_name(path)) {
-        Some(Format::Stl) if stl::announced(&head) == Some(size) => soup((size / stl::FACET).saturating_sub(1)),
-        Some(Format::Stl) => soup(sample(&mut file, head, size).map_err(failed)?.facets),
-        Some(Format::Obj) => sample(&mut file, head, size).map_err(failed)?.wavefront(),
-        Some(Format::Ply) => polygons(&mut file, &head, size).map_err(failed)?,
-        None => return Ok(Estimate::default()),
+    let Some(format) = format::of_head(&head, size).or_else(|| format::of_name(path)) else {
+        return Ok(Estimate::default());
     };
+    let counts = format.counts(&mut Survey { file, head, size }).map_err(failed)?;
     Ok(counts.estimate(size))
+}
+
+/// An open file of which parts are looked at.
+pub(super) struct Survey {
+    file: File,
+    /// First bytes: [`HEAD`], or the whole of a smaller file.
+    pub head: Vec<u8>,
+    /// Size of the file, in bytes.
+    pub size: u64,
 }
 
 fn look(file: &mut File, at: u64, length: u64) -> io::Result<Vec<u8>> {
@@ -85,36 +94,8 @@ fn look(file: &mut File, at: u64, length: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Facets whose corners may all be different.
-fn soup(facets: u64) -> Counts {
-    let corners = facets.saturating_mul(3);
-    Counts { vertices: corners, triangles: facets, vertex: 12, aside: corners.saturating_mul(CORNER - 12) }
-}
-
-/// Of a PLY: what its header announces; how many triangles its faces are, a binary file's length says, and the last
-/// rows of a text.
-fn polygons(file: &mut File, head: &[u8], size: u64) -> io::Result<Counts> {
-    let Some(Announced { vertices, vertex, faces, corners }) = ply::announced(head, size) else {
-        return Ok(Counts::default());
-    };
-    let triangles = match corners {
-        Some(corners) => corners.saturating_sub(faces.saturating_mul(2)),
-        None => {
-            let tail = look(file, size.saturating_sub(TAIL), TAIL)?;
-            let rows = lines(&tail).skip(1).filter_map(|line| words(line).next()?.parse::<u64>().ok());
-            let rows = rows.filter(|corners| *corners >= 3);
-            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.min(1 << 10) - 2));
-            scaled(sum, faces, rows)
-        }
-    }
-    .max(faces);
-    // Polygons are kept as runs of triangles; arrays that turn out too small are copied into larger ones.
-    let aside = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
-    Ok(Counts { vertices, triangles, vertex, aside })
-}
-
 /// `count` of `part`, of `whole`; rounded up and a little more, for a sample is not the whole.
-fn scaled(count: u64, whole: u64, part: u64) -> u64 {
+pub(super) fn scaled(count: u64, whole: u64, part: u64) -> u64 {
     let exact = u128::from(count) * u128::from(whole) / u128::from(part.max(1));
     let more = if whole > part { exact / 20 } else { 0 };
     u64::try_from(exact + more).unwrap_or(u64::MAX)
@@ -122,39 +103,45 @@ fn scaled(count: u64, whole: u64, part: u64) -> u64 {
 
 /// Statements of a text.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sample {
+pub(super) struct Sample {
     positions: u64,
     uvs: u64,
     normals: u64,
     triangles: u64,
     corners: u64,
-    facets: u64,
+    pub facets: u64,
     /// Different corners, and different positions that they name.
     distinct: [u64; 2],
 }
 
-/// Counts statements in a whole text, or in parts of a longer one.
-fn sample(file: &mut File, head: Vec<u8>, size: u64) -> io::Result<Sample> {
-    let mut found = Sample::default();
-    if size <= HEAD {
-        found.count(&head);
-        return Ok(found);
+impl Survey {
+    /// Last bytes of the file: [`TAIL`], or the whole of a smaller file.
+    pub fn tail(&mut self) -> io::Result<Vec<u8>> {
+        look(&mut self.file, self.size.saturating_sub(TAIL), TAIL)
     }
-    drop(head);
-    let mut seen = 0;
-    for i in 0..LOOKS {
-        let bytes = look(file, (size - LOOK) / (LOOKS - 1) * i, LOOK)?;
-        // Lines that are whole.
-        let start = bytes.iter().position(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-        let end = bytes.iter().rposition(|byte| *byte == b'\n').unwrap_or(0);
-        let whole = bytes.get(start..end).unwrap_or_default();
-        seen += whole.len() as u64 + 1;
-        found.count(whole);
+
+    /// Counts statements in a whole text, or in parts of a longer one.
+    pub fn sample(&mut self) -> io::Result<Sample> {
+        let (mut found, size) = (Sample::default(), self.size);
+        if size <= HEAD {
+            found.count(&self.head);
+            return Ok(found);
+        }
+        let mut seen = 0;
+        for i in 0..LOOKS {
+            let bytes = look(&mut self.file, (size - LOOK) / (LOOKS - 1) * i, LOOK)?;
+            // Lines that are whole.
+            let start = bytes.iter().position(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+            let end = bytes.iter().rposition(|byte| *byte == b'\n').unwrap_or(0);
+            let whole = bytes.get(start..end).unwrap_or_default();
+            seen += whole.len() as u64 + 1;
+            found.count(whole);
+        }
+        let Sample { positions, uvs, normals, triangles, corners, facets, distinct } = found;
+        let [positions, uvs, normals, triangles, corners, facets] =
+            [positions, uvs, normals, triangles, corners, facets].map(|count| scaled(count, size, seen));
+        Ok(Sample { positions, uvs, normals, triangles, corners, facets, distinct })
     }
-    let Sample { positions, uvs, normals, triangles, corners, facets, distinct } = found;
-    let [positions, uvs, normals, triangles, corners, facets] =
-        [positions, uvs, normals, triangles, corners, facets].map(|count| scaled(count, size, seen));
-    Ok(Sample { positions, uvs, normals, triangles, corners, facets, distinct })
 }
 
 impl Sample {
@@ -183,7 +170,7 @@ impl Sample {
     }
 
     /// As an OBJ: a corner of other normals or surface coordinates is a vertex of its own.
-    fn wavefront(&self) -> Counts {
+    pub fn wavefront(&self) -> Counts {
         let [corners, positions] = self.distinct;
         let vertices = scaled(self.positions, corners, positions.min(corners)).min(self.corners);
         let carried = if self.normals > 0 { 12 } else { 0 } + if self.uvs > 0 { 8 } else { 0 };
@@ -198,11 +185,11 @@ impl Sample {
     }
 }
 
-fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(|byte| matches!(byte, b'\n' | b'\r'))
 }
 
-fn words(line: &[u8]) -> impl Iterator<Item = &str> {
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &str> {
     std::str::from_utf8(line).unwrap_or_default().split_ascii_whitespace()
 }
 

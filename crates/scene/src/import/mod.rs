@@ -16,6 +16,7 @@ mod error;
 mod estimate;
 mod faces;
 mod foreign;
+mod format;
 mod obj;
 mod pieces;
 mod ply;
@@ -34,7 +35,6 @@ pub use sniff::Content;
 use juggler_imaging::regular;
 use juggler_shape::MeshData;
 use pieces::PIECE;
-use sniff::Format;
 use std::io::Read;
 use std::path::Path;
 
@@ -114,19 +114,14 @@ pub fn parse(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Imported, Imp
     limits.check_bytes(bytes.len() as u64).map_err(in_file)?;
     // Some editors put the mark of UTF-8 before a text.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let named = Format::of_name(path);
+    let named = format::of_name(path);
     if let Some(foreign) = Foreign::of_content(bytes) {
         return Err(in_file(Fault::Foreign(foreign)));
     }
     let unknown = || Foreign::of_name(path).map_or(Fault::UnknownFormat, Fault::Foreign);
-    let format = Format::of_content(bytes).or(named).ok_or_else(|| in_file(unknown()))?;
-    let result = match format {
-        Format::Obj => obj::read(bytes, limits, PIECE),
-        Format::Ply => ply::read(bytes, limits, PIECE),
-        Format::Stl => stl::read(bytes, limits, PIECE),
-    };
-    let mut imported = result.map_err(in_file)?;
-    if named != Some(format) {
+    let format = format::of_content(bytes).or(named).ok_or_else(|| in_file(unknown()))?;
+    let mut imported = format.read(bytes, limits, PIECE).map_err(in_file)?;
+    if named.is_none_or(|named| named.name() != format.name()) {
         imported.warnings.insert(0, format!("the name does not say so, but the content is {}", format.name()));
     }
     Ok(imported)

@@ -14,6 +14,8 @@ mod tests;
 
 use super::assemble::Parts;
 use super::error::{Fault, quote};
+use super::estimate::{Counts, Survey};
+use super::format::MeshFormat;
 use super::pieces::{next_line_start, read_pieces};
 use super::text::{Scanner, integer};
 use super::weld::{Key, Piece, Welded};
@@ -21,9 +23,36 @@ use super::{Imported, Limits};
 use juggler_math::{Vec2, Vec3, vec2, vec3};
 use notes::Notes;
 use rayon::prelude::*;
+use std::io;
 
 /// Stands for an index that a corner does not give.
 const NONE: u32 = u32::MAX;
+
+/// Wavefront OBJ.
+pub(super) struct Obj;
+
+impl MeshFormat for Obj {
+    fn name(&self) -> &'static str {
+        "OBJ"
+    }
+
+    fn extension(&self) -> &'static str {
+        "obj"
+    }
+
+    fn is_content(&self, bytes: &[u8]) -> bool {
+        let first = Scanner::wavefront(bytes).word_anywhere();
+        matches!(first, Some(b"v" | b"vt" | b"vn" | b"f" | b"mtllib" | b"usemtl" | b"o" | b"g"))
+    }
+
+    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+        read(bytes, limits, piece)
+    }
+
+    fn counts(&self, file: &mut Survey) -> io::Result<Counts> {
+        Ok(file.sample()?.wavefront())
+    }
+}
 
 /// Reads a whole file in pieces of about this many bytes.
 pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {

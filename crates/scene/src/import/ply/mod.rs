@@ -15,13 +15,42 @@ mod header;
 mod tests;
 mod vertices;
 
-pub(super) use announced::{Announced, announced};
+use announced::{Announced, announced};
 
 use super::error::Fault;
+use super::estimate::{Counts, FACE, Survey, lines, scaled, words};
+use super::format::MeshFormat;
 use super::text::Scanner;
 use super::{Imported, Limits};
 use body::Body;
 use header::{Encoding, Header};
+use std::io;
+
+/// Stanford PLY.
+pub(super) struct Ply;
+
+impl MeshFormat for Ply {
+    fn name(&self) -> &'static str {
+        "PLY"
+    }
+
+    fn extension(&self) -> &'static str {
+        "ply"
+    }
+
+    fn is_content(&self, bytes: &[u8]) -> bool {
+        let mut scanner = Scanner::wavefront(bytes);
+        scanner.word_anywhere() == Some(b"ply") && scanner.word().is_none()
+    }
+
+    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+        read(bytes, limits, piece)
+    }
+
+    fn counts(&self, file: &mut Survey) -> io::Result<Counts> {
+        polygons(file)
+    }
+}
 
 /// Reads a whole file in pieces of about this many bytes.
 pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
@@ -32,4 +61,26 @@ pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Import
         Encoding::Ascii => body.read(ascii::AsciiValues::new(scanner)),
         Encoding::Binary(order) => body.read(binary::BinaryValues::new(bytes, scanner.position(), order)),
     }
+}
+
+/// Of a PLY: what its header announces; how many triangles its faces are, a binary file's length says, and the last
+/// rows of a text.
+fn polygons(file: &mut Survey) -> io::Result<Counts> {
+    let Some(Announced { vertices, vertex, faces, corners }) = announced(&file.head, file.size) else {
+        return Ok(Counts::default());
+    };
+    let triangles = match corners {
+        Some(corners) => corners.saturating_sub(faces.saturating_mul(2)),
+        None => {
+            let tail = file.tail()?;
+            let rows = lines(&tail).skip(1).filter_map(|line| words(line).next()?.parse::<u64>().ok());
+            let rows = rows.filter(|corners| *corners >= 3);
+            let (rows, sum) = rows.fold((0, 0), |(rows, sum), corners| (rows + 1, sum + corners.min(1 << 10) - 2));
+            scaled(sum, faces, rows)
+        }
+    }
+    .max(faces);
+    // Polygons are kept as runs of triangles; arrays that turn out too small are copied into larger ones.
+    let aside = if triangles > faces { faces * 32 + triangles * FACE } else { 0 };
+    Ok(Counts { vertices, triangles, vertex, aside })
 }

@@ -9,16 +9,57 @@ mod binary;
 #[cfg(test)]
 mod tests;
 
-pub(super) use binary::{announced, is_binary};
+use binary::{announced, is_binary};
 
 use super::assemble::Parts;
 use super::error::Fault;
+use super::estimate::{Counts, Survey};
+use super::format::MeshFormat;
+use super::text::Scanner;
 use super::weld::{Piece, Welded};
 use super::{Imported, Limits};
 use juggler_math::Vec3;
+use std::io;
 
 /// Bytes of a facet in a binary file.
-pub(super) const FACET: u64 = 50;
+const FACET: u64 = 50;
+
+/// STL, text or binary.
+pub(super) struct Stl;
+
+impl MeshFormat for Stl {
+    fn name(&self) -> &'static str {
+        "STL"
+    }
+
+    fn extension(&self) -> &'static str {
+        "stl"
+    }
+
+    fn is_z_up(&self) -> bool {
+        true
+    }
+
+    fn is_content(&self, bytes: &[u8]) -> bool {
+        let first = Scanner::wavefront(bytes).word_anywhere();
+        is_binary(bytes) || first.is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+    }
+
+    fn is_head(&self, head: &[u8], size: u64) -> bool {
+        announced(head) == Some(size) || self.is_content(head)
+    }
+
+    fn read(&self, bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
+        read(bytes, limits, piece)
+    }
+
+    fn counts(&self, file: &mut Survey) -> io::Result<Counts> {
+        if announced(&file.head) == Some(file.size) {
+            return Ok(Counts::of_facets((file.size / FACET).saturating_sub(1)));
+        }
+        Ok(Counts::of_facets(file.sample()?.facets))
+    }
+}
 
 /// Reads a whole file in pieces of about this many bytes.
 pub(super) fn read(bytes: &[u8], limits: &Limits, piece: usize) -> Result<Imported, Fault> {
