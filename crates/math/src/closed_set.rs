@@ -10,6 +10,9 @@
 /// `pub enum Lobe: static ScatteringLobe { lambert::Lambert, ... } fn ...;` declares values of the
 /// inner loops: the enum has the methods that follow the list of kinds, each a `match` that calls
 /// the trait's method without a pointer in between.
+///
+/// `{ sobol::Sobol => SobolPoints, ... }` declares both at once: descriptions, and what they become
+/// in the inner loops.
 #[macro_export]
 macro_rules! closed_set {
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: static $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }
@@ -33,6 +36,21 @@ macro_rules! closed_set {
         })+
 
         $crate::closed_set! { @methods $Set $Trait {$($Kind)+} $($method)+ }
+    };
+
+    ($(#[$attribute:meta])* $vis:vis enum $Set:ident: $Trait:ident {
+            $($file:ident::$Kind:ident => $Compiled:ident),+ $(,)?
+        }
+        $(#[$compiled_attribute:meta])* $compiled_vis:vis enum $CompiledSet:ident: static $CompiledTrait:ident;
+        $($method:tt)+
+    ) => {
+        $crate::closed_set! {
+            $(#[$attribute])* $vis enum $Set: $Trait { $($file::$Kind),+ }
+        }
+        $crate::closed_set! {
+            $(#[$compiled_attribute])* $compiled_vis enum $CompiledSet: static $CompiledTrait { $($file::$Compiled),+ }
+            $($method)+
+        }
     };
 
     (@methods $Set:ident $Trait:ident $kinds:tt

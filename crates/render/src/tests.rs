@@ -4,7 +4,7 @@ use super::*;
 use juggler_bsdf::fresnel;
 use juggler_camera::film::{Box as BoxFilter, Reconstruction};
 use juggler_camera::layer::{self, LightGroup};
-use juggler_camera::sampler::{Pattern, Sobol, Spread};
+use juggler_camera::sampler::{Pattern, Sobol, SobolPoints, Spread};
 use juggler_camera::{AnyCamera, Perspective};
 use juggler_integrator::{AnyIntegrator, Classic, Emit, Integrator, PathState};
 use juggler_light::AnyLight;
@@ -70,7 +70,7 @@ pub fn pixels(world: &World, camera: &Shot, integrator: &AnyIntegrator, size: UV
 
 pub fn job<'w>(world: &'w World, camera: &'w Shot, integrator: &'w AnyIntegrator, samples: u32) -> Job<'w> {
     let (pattern, filter) = (Sobol {}.pattern(samples), BoxFilter {}.filter(samples));
-    assert_eq!(pattern, Pattern::Sobol);
+    assert_eq!(pattern, Pattern::SobolPoints(SobolPoints));
     Job {
         world,
         camera,

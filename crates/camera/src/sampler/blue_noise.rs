@@ -14,7 +14,7 @@
 //! {"blue_noise": {}}
 //! ```
 
-use super::{Pattern, Spread, sobol};
+use super::{Pattern, PointSet, Spread, sobol};
 use juggler_math::{UVec2, Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,34 @@ const MAX_BITS: u32 = 32 - PLACE_BITS;
 impl Spread for BlueNoise {
     fn pattern(&self, samples: u32) -> Pattern {
         let bits = u32::BITS - samples.saturating_sub(1).leading_zeros();
-        Pattern::BlueNoise { bits: bits.min(MAX_BITS) as u8, place: 0 }
+        BlueNoisePoints { bits: bits.min(MAX_BITS) as u8, place: 0 }.into()
+    }
+}
+
+/// Points of [`BlueNoise`]: Owen-scrambled Sobol points that neighboring pixels share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BlueNoisePoints {
+    /// 2 to the power of this many samples a pixel are planned.
+    bits: u8,
+    /// Place of the pixel among those that share the points; 0 for a picture.
+    place: u16,
+}
+
+impl PointSet for BlueNoisePoints {
+    #[inline]
+    fn pixel_seed(&self, seed: u32, pixel: UVec2) -> u32 {
+        let block = pixel / BLOCK_EDGE;
+        hash::combine(hash::combine(seed, block.x), block.y)
+    }
+
+    #[inline]
+    fn at_pixel(&self, pixel: UVec2) -> Pattern {
+        Self { place: place(pixel), ..*self }.into()
+    }
+
+    #[inline]
+    fn point(&self, index: u32, _is_first: bool, seed: u32) -> Vec2 {
+        point(index, self.place, self.bits, seed)
     }
 }
 

@@ -4,7 +4,7 @@
 //! {"independent": {}}
 //! ```
 
-use super::{Pattern, Spread};
+use super::{Pattern, PointSet, Spread};
 use juggler_math::{Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,18 @@ pub struct Independent {}
 
 impl Spread for Independent {
     fn pattern(&self, _samples: u32) -> Pattern {
-        Pattern::Independent
+        IndependentPoints.into()
+    }
+}
+
+/// Points of [`Independent`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IndependentPoints;
+
+impl PointSet for IndependentPoints {
+    #[inline]
+    fn point(&self, index: u32, _is_first: bool, seed: u32) -> Vec2 {
+        point(index, seed)
     }
 }
 

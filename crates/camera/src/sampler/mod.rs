@@ -19,7 +19,50 @@ pub trait Spread: Send + Sync {
 juggler_math::closed_set! {
     /// Every sampler. In JSON: `{"sobol": {}}`, or short `"sobol"`.
     pub enum AnySampler: Spread {
-        sobol::Sobol, stratified::Stratified, independent::Independent, blue_noise::BlueNoise,
+        sobol::Sobol => SobolPoints,
+        stratified::Stratified => StratifiedPoints,
+        independent::Independent => IndependentPoints,
+        blue_noise::BlueNoise => BlueNoisePoints,
+    }
+    /// Pattern of the samples of one pixel and dimension, ready to draw.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Pattern: static PointSet;
+    fn pixel_seed(&self, seed: u32, pixel: UVec2) -> u32;
+    fn at_pixel(&self, pixel: UVec2) -> Pattern;
+    fn first_coordinate(&self, index: u32, is_first: bool, seed: u32) -> f32;
+    fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2;
+    fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]) -> ();
+}
+
+/// Points in [0, 1)² for the samples of a pixel, a set a dimension: pure functions.
+pub trait PointSet: Copy + Into<Pattern> {
+    /// Seed of a pixel in a picture of this `seed`.
+    #[inline]
+    fn pixel_seed(&self, seed: u32, pixel: UVec2) -> u32 {
+        hash::combine(hash::combine(seed, pixel.x), pixel.y)
+    }
+
+    /// Pattern of a pixel.
+    #[inline]
+    fn at_pixel(&self, _pixel: UVec2) -> Pattern {
+        (*self).into()
+    }
+
+    /// Point of sample `index` in the dimension `seed`; `is_first` for the place on the film.
+    fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2;
+
+    /// x of [`point`](Self::point).
+    #[inline]
+    fn first_coordinate(&self, index: u32, is_first: bool, seed: u32) -> f32 {
+        self.point(index, is_first, seed).x
+    }
+
+    /// Points of the samples from `first` on, of the first dimension.
+    #[inline]
+    fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]) {
+        for (i, point) in points.iter_mut().enumerate() {
+            *point = self.point(first.wrapping_add(i as u32), true, seed);
+        }
     }
 }
 
@@ -27,27 +70,6 @@ impl Default for AnySampler {
     fn default() -> Self {
         Sobol::default().into()
     }
-}
-
-/// How the samples of one pixel and dimension are spread, ready to draw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pattern {
-    /// Hashes without any structure.
-    Independent,
-    /// Owen-scrambled Sobol points.
-    Sobol,
-    /// One point in each cell of a `side` × `side` grid, grid after grid.
-    Stratified {
-        /// Cells along an edge, at least 1.
-        side: u32,
-    },
-    /// Owen-scrambled Sobol points that neighbouring pixels share.
-    BlueNoise {
-        /// 2 to the power of this many samples a pixel are planned.
-        bits: u8,
-        /// Where the pixel comes among those that it shares the points with; 0 for a picture.
-        place: u16,
-    },
 }
 
 /// The stream of numbers of one sample of one pixel. Copy it freely: it holds an address, not a state
@@ -69,12 +91,8 @@ impl Sampler {
     /// The numbers of sample 0 of a pixel of this picture.
     #[inline]
     pub fn pixel(&self, pixel: UVec2) -> Self {
-        if let Pattern::BlueNoise { bits, .. } = self.pattern {
-            let (block, place) = (pixel / blue_noise::BLOCK_EDGE, blue_noise::place(pixel));
-            let seed = hash::combine(hash::combine(self.seed, block.x), block.y);
-            return Self { seed, pattern: Pattern::BlueNoise { bits, place }, ..*self };
-        }
-        Self { seed: hash::combine(hash::combine(self.seed, pixel.x), pixel.y), ..*self }
+        let seed = self.pattern.pixel_seed(self.seed, pixel);
+        Self { seed, pattern: self.pattern.at_pixel(pixel), ..*self }
     }
 
     /// The numbers of sample `index` of the same pixel, from the first dimension on.
@@ -98,13 +116,8 @@ impl Sampler {
     /// The next number in [0, 1): the first coordinate of [`Sampler::next_2d`].
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        match self.pattern {
-            Pattern::Sobol => {
-                let seed = self.next_seed();
-                sobol::first_coordinate(self.index, seed)
-            }
-            _ => self.next_2d().x,
-        }
+        let seed = self.next_seed();
+        self.pattern.first_coordinate(self.index, self.dimension == 1, seed)
     }
 
     /// Seed of the next dimension.
@@ -119,26 +132,13 @@ impl Sampler {
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         let seed = self.next_seed();
-        match self.pattern {
-            Pattern::Sobol => sobol::point(self.index, seed),
-            Pattern::Stratified { side } => stratified::point(self.index, self.dimension == 1, seed, side),
-            Pattern::Independent => independent::point(self.index, seed),
-            Pattern::BlueNoise { bits, place } => blue_noise::point(self.index, place, bits, seed),
-        }
+        self.pattern.point(self.index, self.dimension == 1, seed)
     }
 
     /// What [`Sampler::next_2d`] gives first for the samples from `first` on of this pixel: their places on
     /// the film.
     pub fn first_points(&self, first: u32, points: &mut [Vec2]) {
-        let seed = self.seed ^ hash::mix(0);
-        match self.pattern {
-            Pattern::Sobol => fill(points, first, |index| sobol::point(index, seed)),
-            Pattern::Stratified { side } => stratified::points_in_order(first, seed, side, points),
-            Pattern::Independent => fill(points, first, |index| independent::point(index, seed)),
-            Pattern::BlueNoise { bits, place } => {
-                fill(points, first, |index| blue_noise::point(index, place, bits, seed));
-            }
-        }
+        self.pattern.fill(first, self.seed ^ hash::mix(0), points);
     }
 
     /// The numbers from `count` dimensions further on.
@@ -151,12 +151,6 @@ impl Sampler {
     /// Leaves out `count` dimensions.
     pub fn skip(&mut self, count: u32) {
         self.dimension += count;
-    }
-}
-
-fn fill(points: &mut [Vec2], first: u32, point: impl Fn(u32) -> Vec2) {
-    for (i, place) in points.iter_mut().enumerate() {
-        *place = point(first.wrapping_add(i as u32));
     }
 }
 

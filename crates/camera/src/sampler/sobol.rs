@@ -6,7 +6,7 @@
 //! {"sobol": {}}
 //! ```
 
-use super::{Pattern, Spread};
+use super::{Pattern, PointSet, Spread};
 use juggler_math::{Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,13 +18,29 @@ pub struct Sobol {}
 
 impl Spread for Sobol {
     fn pattern(&self, _samples: u32) -> Pattern {
-        Pattern::Sobol
+        SobolPoints.into()
+    }
+}
+
+/// Points of [`Sobol`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SobolPoints;
+
+impl PointSet for SobolPoints {
+    #[inline]
+    fn point(&self, index: u32, _is_first: bool, seed: u32) -> Vec2 {
+        point(index, seed)
+    }
+
+    #[inline]
+    fn first_coordinate(&self, index: u32, _is_first: bool, seed: u32) -> f32 {
+        first_coordinate(index, seed)
     }
 }
 
 /// First coordinate of [`point`].
 #[inline]
-pub fn first_coordinate(index: u32, seed: u32) -> f32 {
+fn first_coordinate(index: u32, seed: u32) -> f32 {
     hash::unit_f32(scrambled_first(shuffled(index, seed), seed).reverse_bits())
 }
 

@@ -4,7 +4,7 @@
 //! {"stratified": {"side": 8}}
 //! ```
 
-use super::{Pattern, Spread};
+use super::{Pattern, PointSet, Spread};
 use juggler_math::{Vec2, hash};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,26 @@ pub struct Stratified {
 impl Spread for Stratified {
     fn pattern(&self, samples: u32) -> Pattern {
         let side = if self.side == 0 { samples.isqrt() } else { self.side };
-        Pattern::Stratified { side: side.clamp(1, 4096) }
+        StratifiedPoints { side: side.clamp(1, 4096) }.into()
+    }
+}
+
+/// Points of [`Stratified`]: one point in each cell of a grid, grid after grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StratifiedPoints {
+    /// Cells along an edge, at least 1.
+    side: u32,
+}
+
+impl PointSet for StratifiedPoints {
+    #[inline]
+    fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2 {
+        point(index, is_first, seed, self.side)
+    }
+
+    #[inline]
+    fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]) {
+        points_in_order(first, seed, self.side, points);
     }
 }
 

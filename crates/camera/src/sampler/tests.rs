@@ -42,7 +42,7 @@ fn one_dimensional_numbers_are_first_coordinates() {
 
 #[test]
 fn sobol_fills_every_elementary_interval_once() {
-    let points = points(Pattern::Sobol, 256);
+    let points = points(Pattern::SobolPoints(SobolPoints), 256);
     for bits in 0..=8 {
         let counts = cells(&points, 1 << bits, 1 << (8 - bits));
         assert!(counts.iter().all(|c| *c == 1), "2^{bits} columns");
@@ -52,7 +52,7 @@ fn sobol_fills_every_elementary_interval_once() {
 #[test]
 fn stratified_fills_every_cell_once_a_set() {
     for side in [1, 3, 8] {
-        let pixel = Sampler::new(Pattern::Stratified { side }, 1).pixel(UVec2::new(9, 9));
+        let pixel = Sampler::new(Stratified { side }.pattern(1), 1).pixel(UVec2::new(9, 9));
         for dimension in 0..3 {
             let draw = |i: u32| {
                 let mut sampler = pixel.sample(i);
@@ -99,7 +99,7 @@ fn streams_are_uniform_and_unlike_each_other() {
 
 #[test]
 fn a_sample_depends_on_its_address_alone() {
-    let pixel = Sampler::new(Pattern::Sobol, 11).pixel(UVec2::new(4, 2));
+    let pixel = Sampler::new(Pattern::SobolPoints(SobolPoints), 11).pixel(UVec2::new(4, 2));
     let mut first = pixel.sample(5);
     first.next_2d();
     let second = first.next_2d();
@@ -109,8 +109,8 @@ fn a_sample_depends_on_its_address_alone() {
     assert_ne!(pixel.sample(6).next_2d(), pixel.sample(5).next_2d());
     assert_ne!(pixel.sample(5).branch(0).next_2d(), pixel.sample(5).branch(1).next_2d());
     assert_ne!(
-        Sampler::new(Pattern::Sobol, 1 << 32).pixel(UVec2::ZERO),
-        Sampler::new(Pattern::Sobol, 0).pixel(UVec2::ZERO)
+        Sampler::new(Pattern::SobolPoints(SobolPoints), 1 << 32).pixel(UVec2::ZERO),
+        Sampler::new(Pattern::SobolPoints(SobolPoints), 0).pixel(UVec2::ZERO)
     );
 }
 
