@@ -33,7 +33,6 @@ mod scene;
 pub mod schema;
 mod shared;
 mod store;
-pub mod suggest;
 pub mod validate;
 
 pub use bookmark::{camera_json, with_camera};
@@ -43,6 +42,7 @@ pub use error::SceneError;
 pub use fingerprint::Fingerprint;
 pub use integrator::{IntegratorChoice, IntegratorReason};
 pub use item::Item;
+pub use juggler_math::suggest;
 pub use motion::{ListTracks, ObjectTrack, Tracks};
 pub use presets::{BuiltIn, built_in_scenes};
 pub use report::{Problem, Problems, Severity};
