@@ -17,7 +17,6 @@ pub mod description;
 pub mod document;
 mod edit;
 mod error;
-pub mod expression;
 mod fingerprint;
 pub mod import;
 mod integrator;
