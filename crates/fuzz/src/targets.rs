@@ -5,9 +5,9 @@ use juggler::imaging::{self, Limits, decode, decode_raster, inspect_raster};
 use juggler::light::Profile;
 use juggler::memory::Memory;
 use juggler::scene::Scene;
-use juggler::scene::expression::{Names, Quantity, evaluate};
 use juggler::scene::import::{self, parse};
 use juggler::{LayerSet, Settings};
+use juggler_expression::{Names, PointEvaluator, Program, Quantity};
 use juggler_math::Rgb;
 use std::io::Cursor;
 use std::path::Path;
@@ -60,10 +60,11 @@ fn scene(bytes: &[u8]) -> bool {
 }
 
 fn expression(bytes: &[u8]) -> bool {
-    let numbers = [("frame", 7.25), ("pi", std::f64::consts::PI)].map(|(name, value)| (name.to_owned(), value.into()));
-    let vector = ("v".to_owned(), Quantity::Vector(vec![1.0, -2.0, 0.5]));
+    let numbers = [("frame", 7.25), ("pi", std::f64::consts::PI)].map(|(name, value)| (name, value.into()));
+    let vector = ("v", Quantity::Vector(vec![1.0, -2.0, 0.5]));
     let names: Names = numbers.into_iter().chain([vector]).collect();
-    let value = evaluate(&String::from_utf8_lossy(bytes), &names);
+    let program = Program::compile(&String::from_utf8_lossy(bytes), &names);
+    let value = program.and_then(|program| PointEvaluator::default().value(&program, &names));
     value.as_ref().is_ok_and(|value| {
         assert!(value.is_none_or(f64::is_finite), "an expression has the value {value:?}");
         true

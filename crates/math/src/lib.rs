@@ -20,6 +20,7 @@ pub mod quaternion;
 pub mod range;
 pub mod ray;
 pub mod robust;
+pub mod suggest;
 pub mod transform;
 pub mod warp;
 

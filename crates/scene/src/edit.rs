@@ -87,7 +87,8 @@ impl Scene {
 
     fn check_paths(&self) -> Result<(), Vec<Finding>> {
         let head = motion::head(&self.description);
-        let (resolved, mut findings) = animate::resolve(&head, self.sources(), self.frame);
+        let (resolved, mut findings) =
+            animate::resolve_with(&head, self.sources(), &self.description.programs, self.frame);
         let at = Trail::Root.key("paths");
         let paths = resolved.get("paths");
         findings.extend(paths.into_iter().flat_map(|paths| {

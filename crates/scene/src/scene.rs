@@ -107,12 +107,14 @@ impl Scene {
     fn parse(text: String, name: &str, library: Library) -> Result<Self, SceneError> {
         let (mut document, mut findings) = Document::read(name, text, library.store())
             .map_err(|(sources, findings)| SceneError::Problems(Problems::new(findings, sources, &|_| None)))?;
-        let (resolved, wrong) = animate::resolve(&document.tree, &document.sources, 0.0);
+        let programs = animate::Programs::default();
+        let (resolved, wrong) = animate::resolve_with(&document.tree, &document.sources, &programs, 0.0);
         findings.extend(wrong);
         let found = described(&resolved, &mut findings);
         drop(resolved);
         let whole = found.is_some() && !findings.iter().any(Finding::is_error);
         let (mut description, in_place) = found.unwrap_or_default();
+        description.programs = programs;
         motion::attach(&mut description, &document.tree, &in_place);
         for list in std::mem::take(&mut document.lists) {
             findings.extend(read_list(&mut description, &list, &document.sources));
@@ -287,7 +289,7 @@ impl Scene {
 
     /// What moves in the scene, for people to read.
     pub fn survey(&self) -> animate::Survey {
-        animate::survey(&self.to_value().into(), self.sources())
+        animate::survey(&self.to_value().into(), self.sources(), &self.description.programs)
     }
 
     /// Whether anything in the scene may change from frame to frame.

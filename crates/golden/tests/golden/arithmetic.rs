@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Crates whose numbers decide pixels.
-const CRATES: [&str; 15] = [
+const CRATES: [&str; 16] = [
     "math",
     "bvh",
     "bsdf",
@@ -19,6 +19,7 @@ const CRATES: [&str; 15] = [
     "integrator",
     "render",
     "scene",
+    "expression",
     "film",
     "imaging",
     "denoise",

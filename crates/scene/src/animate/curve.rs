@@ -5,7 +5,7 @@
 //! rule over small pieces; the point at a length is found by halving within its piece.
 
 use super::spline::{hermite, hermite_slope, tangent};
-use crate::expression::modulo;
+use juggler_expression::modulo;
 use juggler_math::DVec3;
 
 /// Pieces of each stretch between two points whose lengths are kept.

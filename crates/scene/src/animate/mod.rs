@@ -8,16 +8,17 @@
 //! Order: variables, each of which may use those before it; paths, which variables may ask for earlier; all the rest.
 
 use crate::document::{Members, Node, Sources, Value};
-use crate::expression::{self, Names};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest;
+use juggler_expression::{Names, PointEvaluator, Program};
 use std::sync::Arc;
 use walk::Walk;
 
 mod curve;
 mod easing;
 mod paths;
+mod programs;
 mod resolver;
 mod spline;
 mod survey;
@@ -27,6 +28,7 @@ mod walk;
 
 pub use easing::{Ease, Easing};
 pub use paths::{MAX_POINTS, PathName};
+pub(crate) use programs::Programs;
 pub(crate) use resolver::Resolver;
 pub use survey::{Survey, Track, depends_on_time};
 pub(crate) use survey::{TimeDependence, has_expressions};
@@ -45,19 +47,24 @@ const CHANGING: [&str; 2] = ["frame", "seconds"];
 /// The tree at a frame (which may lie between two), with every mistake in an expression or value form. What holds
 /// neither is shared with `tree`.
 pub fn resolve(tree: &Node, sources: &Sources, frame: f64) -> (Node, Vec<Finding>) {
-    let mut walk = Walk::new(tree, sources, given(tree, frame));
-    let resolved = resolve_with(&mut walk, tree);
+    resolve_with(tree, sources, &Programs::default(), frame)
+}
+
+/// [`resolve`] with the scene's compiled expressions.
+pub(crate) fn resolve_with(tree: &Node, sources: &Sources, programs: &Programs, frame: f64) -> (Node, Vec<Finding>) {
+    let mut walk = Walk::new(tree, sources, programs, given(tree, frame));
+    let resolved = resolved(&mut walk, tree);
     (resolved, walk.findings)
 }
 
 /// What moves in a tree, for people to read.
-pub fn survey(tree: &Node, sources: &Sources) -> Survey {
-    let mut walk = Walk::new(tree, sources, given(tree, 0.0)).surveying();
-    resolve_with(&mut walk, tree);
-    Survey { tracks: walk.tracks.unwrap_or_default(), expressions: survey::changing_expressions(tree) }
+pub(crate) fn survey(tree: &Node, sources: &Sources, programs: &Programs) -> Survey {
+    let mut walk = Walk::new(tree, sources, programs, given(tree, 0.0)).surveying();
+    resolved(&mut walk, tree);
+    Survey { tracks: walk.tracks.unwrap_or_default(), expressions: survey::changing_expressions(tree, programs) }
 }
 
-fn resolve_with(walk: &mut Walk<'_>, tree: &Node) -> Node {
+fn resolved(walk: &mut Walk<'_>, tree: &Node) -> Node {
     walk.variables();
     let paths = walk.all_paths();
     let mut resolved = tree.clone();
@@ -96,7 +103,7 @@ fn given(tree: &Node, frame: f64) -> Names {
     let frames = number("frames", 1.0);
     let seconds = frame / number("frames_per_second", 30.0);
     let values = [frame, frames, seconds, std::f64::consts::PI].map(Into::into);
-    GIVEN.iter().map(|name| (*name).to_owned()).zip(values).collect()
+    GIVEN.into_iter().zip(values).collect()
 }
 
 /// A whole number stays one, so that it can count things.
@@ -115,8 +122,9 @@ fn numbers(values: impl IntoIterator<Item = f64>, node: &Node) -> Node {
 
 /// Suggests `=` for a text where a number should be: `"2*pi"` probably misses it.
 pub fn looks_like_expression(text: &str) -> bool {
-    let names: Names = GIVEN.iter().map(|name| ((*name).to_owned(), 1.0.into())).collect();
-    suggest::closest(text, ["inf", "nan"]).is_none() && expression::evaluate(text, &names).is_ok()
+    let names: Names = GIVEN.into_iter().map(|name| (name, 1.0.into())).collect();
+    let has_value = |program: Program| PointEvaluator::default().value(&program, &names).is_ok();
+    suggest::closest(text, ["inf", "nan"]).is_none() && Program::compile(text, &names).is_ok_and(has_value)
 }
 
 /// The reserved keys of value forms.

@@ -1,8 +1,8 @@
 //! Single values of a scene, worked out for one frame: the scene's variables and paths are looked at once, then as many
 //! values as are wanted.
 
-use super::given;
 use super::walk::Walk;
+use super::{Programs, given};
 use crate::document::{Node, Sources, Value};
 use crate::path::Trail;
 use crate::report::Finding;
@@ -15,9 +15,9 @@ pub(crate) struct Resolver<'s> {
 
 impl<'s> Resolver<'s> {
     /// For a frame of the scene whose `animation`, `variables` and `paths` `head` holds. `sources` are the texts that
-    /// they were read from.
-    pub fn new(head: &'s Node, sources: &'s Sources, frame: f64) -> Self {
-        let mut walk = Walk::new(head, sources, given(head, frame));
+    /// they were read from, `programs` the scene's compiled expressions.
+    pub fn new(head: &'s Node, sources: &'s Sources, programs: &'s Programs, frame: f64) -> Self {
+        let mut walk = Walk::new(head, sources, programs, given(head, frame));
         walk.variables();
         if let Some(paths) = walk.all_paths() {
             let paths = Node { place: None, value: Value::Object(paths) };

@@ -2,9 +2,8 @@
 
 use super::values::{self, Interpolation, Repeat};
 use super::walk::Walk;
-use super::{CHANGING, PLAIN};
+use super::{CHANGING, PLAIN, Programs};
 use crate::document::{Node, Value};
-use crate::expression::{FUNCTIONS, names_in};
 use crate::path::{Path, Trail};
 use std::collections::BTreeSet;
 
@@ -48,13 +47,14 @@ impl Walk<'_> {
 
 /// Whether anything in a tree may change with the frame. Variables that nothing uses do not count.
 pub fn depends_on_time(tree: &Node) -> bool {
-    let mut changes = TimeDependence::of(tree);
+    let programs = Programs::default();
+    let mut changes = TimeDependence::of(tree, &programs);
     parts(tree).any(|part| changes.holds(part))
 }
 
 /// How many expressions depend on time.
-pub(super) fn changing_expressions(tree: &Node) -> usize {
-    let mut changes = TimeDependence::of(tree);
+pub(super) fn changing_expressions(tree: &Node, programs: &Programs) -> usize {
+    let mut changes = TimeDependence::of(tree, programs);
     changes.expressions = 0;
     for (_, variable) in tree.get("variables").into_iter().flat_map(Node::members) {
         changes.search(&variable.node, true);
@@ -71,20 +71,24 @@ fn parts(tree: &Node) -> impl Iterator<Item = &Node> {
     tree.members().filter(move |(key, _)| moves(key)).map(|(_, member)| &member.node)
 }
 
-/// Whether a value is worked out anew for each scene: it holds a value form, or an expression that names more than
-/// constants and functions.
-pub(crate) fn has_expressions(node: &Node) -> bool {
+/// Whether a value may differ from scene to scene: it holds a value form, or an expression that uses a name other than
+/// `pi`.
+pub(crate) fn has_expressions(node: &Node, programs: &Programs) -> bool {
     match &node.value {
-        Value::String(text) => {
-            let constant = |name: &str| name == "pi" || FUNCTIONS.iter().any(|function| function.name == name);
-            text.strip_prefix('=').is_some_and(|text| names_in(text).any(|name| !constant(name)))
-        }
-        Value::Array(elements) => elements.iter().any(has_expressions),
+        Value::String(text) => text.strip_prefix('=').is_some_and(|text| uses(text, programs, |name| name != "pi")),
+        Value::Array(elements) => elements.iter().any(|element| has_expressions(element, programs)),
         Value::Object(members) => {
-            values::kind_in(members).is_some() || members.values().any(|member| has_expressions(&member.node))
+            values::kind_in(members).is_some() || members.values().any(|member| has_expressions(&member.node, programs))
         }
         _ => false,
     }
+}
+
+/// Whether an expression uses a name that satisfies a predicate. An expression that is no program, because of an error,
+/// counts as one that does.
+fn uses(expression: &str, programs: &Programs, is_wanted: impl Fn(&str) -> bool) -> bool {
+    let program = programs.parse(expression).ok();
+    program.is_none_or(|program| program.inputs().iter().any(|input| is_wanted(&input.name)))
 }
 
 /// What changes with time, by name: the search for it in values.
@@ -93,12 +97,14 @@ pub(crate) struct TimeDependence<'t> {
     paths: BTreeSet<&'t str>,
     /// Expressions that changed so far.
     expressions: usize,
+    programs: &'t Programs,
 }
 
 impl<'t> TimeDependence<'t> {
-    /// By the variables and paths of a scene.
-    pub fn of(tree: &'t Node) -> Self {
-        let mut changing = Self { names: BTreeSet::from(CHANGING), paths: BTreeSet::new(), expressions: 0 };
+    /// By the variables and paths of a scene, and its compiled expressions.
+    pub fn of(tree: &'t Node, programs: &'t Programs) -> Self {
+        let names = BTreeSet::from(CHANGING);
+        let mut changing = Self { names, paths: BTreeSet::new(), expressions: 0, programs };
         // Variables may ask for paths, and paths for variables and for each other: until nothing is added.
         loop {
             let before = changing.names.len() + changing.paths.len();
@@ -128,7 +134,8 @@ impl<'t> TimeDependence<'t> {
         match &node.value {
             Value::String(text) => {
                 let expression = text.strip_prefix('=').or_else(|| bare.then_some(text.as_str()));
-                let changes = expression.is_some_and(|text| names_in(text).any(|name| self.names.contains(name)));
+                let changes =
+                    expression.is_some_and(|text| uses(text, self.programs, |name| self.names.contains(name)));
                 self.expressions += usize::from(changes);
                 changes
             }

@@ -3,9 +3,9 @@
 use super::walk::Walk;
 use super::{GIVEN, values};
 use crate::document::{Member, Node, Value};
-use crate::expression::{COMPONENTS, FUNCTIONS, Quantity};
 use crate::path::Trail;
 use crate::report::Finding;
+use juggler_expression::{COMPONENTS, FUNCTIONS, Quantity};
 
 impl Walk<'_> {
     /// Learns the scene's variables.
@@ -18,7 +18,7 @@ impl Walk<'_> {
         for (name, member) in variables.members() {
             let quantity = self.variable(name, member, &at.key(name));
             if !GIVEN.contains(&name.as_str()) {
-                self.names.insert(name.clone(), quantity);
+                self.names.insert(name.as_str(), quantity);
             }
         }
     }

@@ -3,12 +3,12 @@
 use super::paths::Paths;
 use super::survey::Track;
 use super::values::{self, Kind};
-use super::{number, numbers};
+use super::{Programs, number, numbers};
 use crate::document::{Members, Node, Place, Sources, Value};
-use crate::expression::{self, ExpressionError, Names, Quantity};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::validate;
+use juggler_expression::{ExpressionError, Names, PointEvaluator, Quantity};
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
@@ -25,6 +25,8 @@ pub(super) struct Walk<'s> {
     pub variables: Option<&'s Node>,
     pub paths: Paths<'s>,
     sources: &'s Sources,
+    programs: &'s Programs,
+    evaluator: PointEvaluator,
     pub findings: Vec<Finding>,
     /// The value forms met so far, where somebody asks for them.
     pub tracks: Option<Vec<Track>>,
@@ -33,10 +35,18 @@ pub(super) struct Walk<'s> {
 }
 
 impl<'s> Walk<'s> {
-    pub fn new(tree: &'s Node, sources: &'s Sources, names: Names) -> Self {
-        let paths = Paths::of(tree);
-        let variables = tree.get("variables");
-        Self { names, variables, paths, sources, findings: Vec::new(), tracks: None, depth: 0 }
+    pub fn new(tree: &'s Node, sources: &'s Sources, programs: &'s Programs, names: Names) -> Self {
+        Self {
+            names,
+            variables: tree.get("variables"),
+            paths: Paths::of(tree),
+            sources,
+            programs,
+            evaluator: PointEvaluator::default(),
+            findings: Vec::new(),
+            tracks: None,
+            depth: 0,
+        }
     }
 
     /// The same, writing down the value forms that it meets.
@@ -125,7 +135,8 @@ impl Walk<'_> {
         if let Some(vector @ Quantity::Vector(_)) = self.names.get(expression.trim()) {
             return vector.clone();
         }
-        match expression::evaluate(expression, &self.names) {
+        let program = self.programs.compile(expression, &self.names);
+        match program.and_then(|program| self.evaluator.value(&program, &self.names)) {
             Ok(value) => value.map_or(Quantity::Unknown, Quantity::Number),
             Err(error) => {
                 let place = place.map(|place| self.inside(place, text, expression, &error));
@@ -139,7 +150,7 @@ impl Walk<'_> {
     /// What to do when an expression uses a variable that is only defined below.
     fn too_early(&self, expression: &str, error: &ExpressionError) -> Option<String> {
         let name = expression.get(error.at.clone())?.split('.').next()?;
-        let later = self.variables?.get(name).is_some() && !self.names.contains_key(name);
+        let later = self.variables?.get(name).is_some() && !self.names.contains(name);
         later.then(|| format!("`{name}` is defined further down: move it before what uses it"))
     }
 

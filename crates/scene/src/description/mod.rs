@@ -1,6 +1,7 @@
 //! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder all come
 //! from here and from the families of kinds (`juggler_shape`, `juggler_material`, `juggler_light`, ...).
 
+use crate::animate::Programs;
 use crate::item::Item;
 use crate::motion::{AnyItem, ListForm};
 use crate::report::Finding;
@@ -111,6 +112,9 @@ pub struct Description {
     /// Names of textures that value forms give in place.
     #[serde(skip)]
     pub(crate) form_textures: Shared<BTreeSet<String>>,
+    /// Compiled expressions, for the scene's other frames.
+    #[serde(skip)]
+    pub(crate) programs: Programs,
 }
 
 impl Default for Description {
@@ -136,6 +140,7 @@ impl Default for Description {
             objects: Objects::default(),
             list_forms: Shared::default(),
             form_textures: Shared::default(),
+            programs: Programs::default(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Attaches source locations and templates to the items of a scene that was read from text.
 
 use super::{AnyItem, FormValue, ItemContent, ItemSource, ListForm, inside, with_trail};
-use crate::animate::{TimeDependence, has_expressions};
+use crate::animate::{Programs, TimeDependence, has_expressions};
 use crate::description::{Description, Named, Objects, Written};
 use crate::document::{Node, Value};
 use crate::item::{Item, Template};
@@ -16,16 +16,15 @@ use std::sync::Arc;
 pub(crate) fn attach(scene: &mut Description, tree: &Node, in_place: &[String]) {
     scene.variables = Written::new(tree.get("variables"));
     scene.paths = Written::new(tree.get("paths"));
-    let names = in_place.iter().map(String::as_str).collect();
-    let mut attaching = Attaching { changing: TimeDependence::of(tree), names, taken: BTreeMap::new() };
-    attaching.scene(scene, tree);
+    let programs = scene.programs.clone();
+    Attaching::new(tree, in_place, &programs).scene(scene, tree);
 }
 
 /// Attaches source locations and templates to the given items only. `head` holds the scene's variables and
 /// paths; `in_place` lists the names of inline textures of these items.
 pub(crate) fn attach_items(scene: &mut Description, head: &Node, wanted: &[ItemSource], in_place: &[String]) {
-    let names = in_place.iter().map(String::as_str).collect();
-    let mut attaching = Attaching { changing: TimeDependence::of(head), names, taken: BTreeMap::new() };
+    let programs = scene.programs.clone();
+    let mut attaching = Attaching::new(head, in_place, &programs);
     for ItemSource { path, template, .. } in wanted {
         with_trail(path.steps(), &Trail::Root, &mut |at| attaching.at(scene, path, &template.node, at));
     }
@@ -48,6 +47,14 @@ struct Attaching<'t> {
     names: BTreeSet<&'t str>,
     /// Inline textures that were moved out of templates; the templates refer to them by name.
     taken: BTreeMap<&'t str, Node>,
+    programs: &'t Programs,
+}
+
+impl<'t> Attaching<'t> {
+    fn new(head: &'t Node, in_place: &'t [String], programs: &'t Programs) -> Self {
+        let names = in_place.iter().map(String::as_str).collect();
+        Self { changing: TimeDependence::of(head, programs), names, taken: BTreeMap::new(), programs }
+    }
 }
 
 impl Attaching<'_> {
@@ -113,9 +120,9 @@ impl Attaching<'_> {
         let own = |node: &Node| match &node.value {
             Value::Object(members) if !animate::is_form(members) => members.iter().any(|(key, member)| {
                 let is_list = key == "objects" && matches!(member.node.value, Value::Array(_));
-                !is_list && has_expressions(&member.node)
+                !is_list && has_expressions(&member.node, self.programs)
             }),
-            _ => has_expressions(node),
+            _ => has_expressions(node, self.programs),
         };
         let moves = node.is_some_and(own);
         if let Some(inner) = &mut object.value_mut_unmarked().objects {
@@ -130,7 +137,7 @@ impl Attaching<'_> {
 
     /// Template of an item with this JSON; `None` for JSON without expressions and value forms.
     fn template(&mut self, node: &Node, at: &Trail<'_>) -> Option<Arc<Template>> {
-        if !has_expressions(node) {
+        if !has_expressions(node, self.programs) {
             return None;
         }
         let mut node = node.clone();
@@ -147,7 +154,7 @@ impl Attaching<'_> {
             self.taken.extend(take_texture(&mut node, rest, name).map(|texture| (name, texture)));
         }
         let depends_on_time = self.changing.holds(&node);
-        has_expressions(&node).then(|| Arc::new(Template { node, depends_on_time }))
+        has_expressions(&node, self.programs).then(|| Arc::new(Template { node, depends_on_time }))
     }
 
     /// Attaches textures, which are written in the scene's `textures` or inline.
@@ -174,7 +181,7 @@ impl Attaching<'_> {
     }
 
     fn list_form(&mut self, scene: &mut Description, path: Path, node: &Node) {
-        if matches!(node.value, Value::Array(_)) || !has_expressions(node) {
+        if matches!(node.value, Value::Array(_)) || !has_expressions(node, self.programs) {
             return;
         }
         let given = match path.steps() {

@@ -82,7 +82,7 @@ pub(crate) fn read_items(
     frame: f64,
     wanted: &[ItemSource],
 ) -> (ItemValues, Vec<Finding>) {
-    let mut reader = ItemReader::new(head, sources, frame, NameScope::Scene(scene));
+    let mut reader = ItemReader::new(Resolver::new(head, sources, &scene.programs, frame), NameScope::Scene(scene));
     wanted.iter().for_each(|wanted| reader.add(wanted));
     reader.finish()
 }
@@ -117,8 +117,7 @@ struct ItemReader<'s> {
 }
 
 impl<'s> ItemReader<'s> {
-    fn new(head: &'s Node, sources: &'s Sources, frame: f64, known: NameScope<'s>) -> Self {
-        let resolver = Resolver::new(head, sources, frame);
+    fn new(resolver: Resolver<'s>, known: NameScope<'s>) -> Self {
         Self { resolver, known, findings: Vec::new(), unresolved: Vec::new(), read: Vec::new(), textures: Vec::new() }
     }
 

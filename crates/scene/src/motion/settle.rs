@@ -24,11 +24,11 @@ pub(crate) fn edits_merged<'s>(scene: &'s Description, sources: &Sources, frame:
     }
     let mut edits_merged = scene.clone();
     let head = write::head(scene);
-    let mut changing = TimeDependence::of(&head);
+    let mut changing = TimeDependence::of(&head, &scene.programs);
     for (path, template, after) in changed {
         let merged = before(scene, &head, sources, frame, &path, &template)
             .map(|before| merged(&template.node, &before, &after))
-            .filter(has_expressions);
+            .filter(|node| has_expressions(node, &scene.programs));
         let template = merged.map(|node| Arc::new(Template { depends_on_time: changing.holds(&node), node }));
         if let Some(item) = edits_merged.item_mut(&path) {
             item.set_template(template);

@@ -197,7 +197,8 @@ impl Description {
 
     /// Updates the time dependence of all templates; `head` holds the scene's variables and paths.
     pub(crate) fn update_time_dependence(&mut self, head: &Node) {
-        let mut changing = TimeDependence::of(head);
+        let programs = self.programs.clone();
+        let mut changing = TimeDependence::of(head, &programs);
         for form in self.list_forms.iter_mut() {
             let depends_on_time = changing.holds(&form.template.node);
             form.template = Arc::new(Template { node: form.template.node.clone(), depends_on_time });

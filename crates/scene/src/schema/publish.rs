@@ -72,7 +72,7 @@ fn expression() -> Value {
         "description": "A number as an expression, such as `=2*pi*frame/frames`.",
         "type": "string",
         "pattern": "^=",
-        "maxLength": crate::expression::MAX_LENGTH + 1,
+        "maxLength": juggler_expression::MAX_LENGTH + 1,
     })
 }
 

@@ -2,9 +2,9 @@
 
 use super::{Schema, variants};
 use crate::compile::{MAX_EDGE, MAX_EMITTERS, MAX_NESTING, MAX_OBJECTS, MAX_PIXELS, MAX_SAMPLES, MAX_STORED};
-use crate::expression::FUNCTIONS;
 use crate::validate::{family_noun, plural};
-use crate::{animate, compile, document, expression};
+use crate::{animate, compile, document};
+use juggler_expression::FUNCTIONS;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -59,8 +59,8 @@ fn limits() -> String {
         ("nesting of materials", juggler_material::MAX_NESTING.to_string()),
         ("nesting of textures", juggler_texture::MAX_NESTING.to_string()),
         ("lookups of textures that one lookup leads to", juggler_texture::MAX_LOOKUPS.to_string()),
-        ("bytes of an expression", expression::MAX_LENGTH.to_string()),
-        ("nesting of an expression", expression::MAX_DEPTH.to_string()),
+        ("bytes of an expression", juggler_expression::MAX_LENGTH.to_string()),
+        ("nesting of an expression", juggler_expression::MAX_DEPTH.to_string()),
         ("keys of a track", animate::MAX_KEYS.to_string()),
         ("points of a path", animate::MAX_POINTS.to_string()),
         ("nesting of value forms", animate::MAX_NESTING.to_string()),

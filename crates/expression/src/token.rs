@@ -1,25 +1,25 @@
-//! Characters → numbers, names and signs.
+//! Splits text into numbers, names and signs.
 
-use super::ExpressionError;
+use crate::error::{Checked, fail};
 use std::ops::Range;
 
-/// The smallest parts of an expression.
+/// Smallest part of an expression.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Token<'t> {
-    /// A number.
+    /// Number.
     Number(f64),
-    /// A name of a variable or function, or of a component of a variable: `ball.x`.
+    /// Name of a variable or function, or of a component of a variable: `ball.x`.
     Name(&'t str),
-    /// An operator, parenthesis or comma.
+    /// Operator, parenthesis or comma.
     Sign(&'t str),
-    /// Nothing is left.
+    /// End of the text.
     End,
 }
 
 const SIGNS: [&str; 17] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "%", "^", "(", ")", ",", "=", "!"];
 
-/// The token that begins at or after `from`, and its bytes.
-pub fn next(text: &str, from: usize) -> Result<(Token<'_>, Range<usize>), ExpressionError> {
+/// Token that begins at or after `from`, and its byte range.
+pub fn next(text: &str, from: usize) -> Checked<(Token<'_>, Range<usize>)> {
     let rest = text.get(from..).unwrap_or_default();
     let blank = rest.len() - rest.trim_start().len();
     let (start, rest) = (from + blank, rest.trim_start());
@@ -30,7 +30,7 @@ pub fn next(text: &str, from: usize) -> Result<(Token<'_>, Range<usize>), Expres
         let digits = rest.get(..length).unwrap_or_default();
         return match digits.parse() {
             Ok(value) => Ok((Token::Number(value), at)),
-            Err(_) => Err(ExpressionError { message: format!("`{digits}` is not a number"), at, help: None }),
+            Err(_) => fail(at, format!("`{digits}` is not a number")),
         };
     }
     if first.is_ascii_alphabetic() || first == '_' {
@@ -41,12 +41,12 @@ pub fn next(text: &str, from: usize) -> Result<(Token<'_>, Range<usize>), Expres
         Some(sign) => Ok((Token::Sign(sign), start..start + sign.len())),
         None => {
             let at = start..start + first.len_utf8();
-            Err(ExpressionError { at, message: format!("`{first}` has no meaning in an expression"), help: None })
+            fail(at, format!("`{first}` has no meaning in an expression"))
         }
     }
 }
 
-/// How many bytes a name takes: letters, digits and _, and once a point before a letter.
+/// Length of a name in bytes: letters, digits and _, and at most one point, before a letter.
 fn name_length(bytes: &[u8]) -> usize {
     let word = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_alphanumeric() || **b == b'_').count();
     let base = word(0);
@@ -54,7 +54,7 @@ fn name_length(bytes: &[u8]) -> usize {
     if component { base + 1 + word(base + 1) } else { base }
 }
 
-/// How many bytes a number takes: digits, a point, an exponent with its sign.
+/// Length of a number in bytes: digits, a point, an exponent with its sign.
 fn number_length(bytes: &[u8]) -> usize {
     let digits = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count();
     let mut length = digits(0);

@@ -1,6 +1,6 @@
-//! What was probably meant.
+//! Suggestions for misspelled names.
 
-/// The known name nearest to `name`, when it is near enough to be a slip.
+/// Known name nearest to `name`, if it is near enough to be a misspelling.
 pub fn closest<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     if name.len() > 64 {
         return None;
@@ -11,12 +11,12 @@ pub fn closest<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Opti
     (nearest.0 <= allowed).then_some(nearest.1)
 }
 
-/// The question.
+/// Question that suggests a name.
 pub fn did_you_mean(name: &str) -> String {
     format!("did you mean `{name}`?")
 }
 
-/// The question when there is a likely answer, else all that could stand there.
+/// Question that suggests the nearest known name, else a list of the known names.
 pub fn meant_or_all<'n>(name: &str, known: impl IntoIterator<Item = &'n str> + Clone) -> Option<String> {
     if let Some(name) = closest(name, known.clone()) {
         return Some(did_you_mean(name));
