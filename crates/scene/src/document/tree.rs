@@ -2,6 +2,7 @@
 
 use super::source::Place;
 use crate::path::{Path, Step};
+use foldhash::fast::RandomState;
 use indexmap::IndexMap;
 use serde_json::Number;
 use std::sync::Arc;
@@ -44,7 +45,7 @@ pub enum Value {
 }
 
 /// The entries of an object in the order of the file.
-pub type Members = IndexMap<String, Member>;
+pub type Members = IndexMap<String, Member, RandomState>;
 
 impl Node {
     /// The entry of an object.
