@@ -8,7 +8,8 @@ use super::chunks::{self, LongList};
 use super::guard::{self, Refused};
 use super::source::{FileId, Place, Sources};
 use super::tree::{Member, Node, Value};
-use super::{Unreadable, parse};
+use super::{Unreadable, parse, parse_part};
+use crate::path::Trail;
 use crate::report::{Finding, plain_io};
 use crate::schema::Schema;
 use crate::store::Store;
@@ -53,13 +54,14 @@ impl<'s> Reader<'s> {
 
     /// The merged tree of the main file, as far as there is one, and its long lists, which are left out of the tree.
     pub fn main(&mut self, name: &str, text: String) -> Option<(Node, Vec<LongList>)> {
-        match chunks::split(&text) {
-            // What is included stands before what includes it: lists of several files are read as trees.
-            Some((rest, lists)) if guard::check(&text).is_ok() && is_alone(&rest) => {
+        let split = chunks::split(&text).filter(|_| guard::check(&text).is_ok());
+        let parsed = split.and_then(|(rest, lists)| Some((alone(&rest)?, lists)));
+        match parsed {
+            Some((parsed, lists)) => {
                 let id = self.sources.add(name, text);
-                Some((self.merged(id, parse(&rest, id))?, lists))
+                Some((self.merged(id, Ok(parsed))?, lists))
             }
-            _ => Some((self.file(name, text)?, Vec::new())),
+            None => Some((self.file(name, text)?, Vec::new())),
         }
     }
 
@@ -230,9 +232,11 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// Whether a text is a scene that includes no other.
-fn is_alone(text: &str) -> bool {
-    parse(text, FileId::MAIN).is_ok_and(|(tree, _)| tree.get("include").is_none())
+/// The tree of the main file, if the scene includes no other file. What is included stands before what includes it, so
+/// lists of several files are read as trees.
+fn alone(text: &str) -> Option<(Node, Vec<Refused>)> {
+    let parsed = parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root).ok()?;
+    parsed.0.get("include").is_none().then_some(parsed)
 }
 
 pub fn finding(file: FileId, refused: Refused) -> Finding {
