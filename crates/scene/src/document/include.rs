@@ -99,10 +99,10 @@ impl<'s> Reader<'s> {
             return None;
         };
         let members = Arc::make_mut(members);
-        if let Some(schema) = members.shift_remove("$schema") {
+        if let Some(schema) = members.remove("$schema") {
             self.check_schema(&schema.node);
         }
-        let Some(include) = members.shift_remove("include") else { return Some(tree) };
+        let Some(include) = members.remove("include") else { return Some(tree) };
         for named in self.names(&include.node) {
             if let Some(other) = self.included(named, id) {
                 self.merge(&mut tree, other);
@@ -192,9 +192,7 @@ impl<'s> Reader<'s> {
         for (key, member) in Arc::unwrap_or_clone(from) {
             let known = MAPS.contains(&key.as_str()) || LISTS.contains(&key.as_str());
             match into.get_mut(&key) {
-                None if known => {
-                    into.insert(key, member);
-                }
+                None if known => into.append(key, member),
                 Some(own) if known => self.join(&key, own, member),
                 _ => {}
             }
@@ -209,17 +207,19 @@ impl<'s> Reader<'s> {
             }
             (Value::Object(own), Value::Object(other)) => {
                 let own = Arc::make_mut(own);
+                let mut first = Vec::new();
                 for (at, (name, member)) in Arc::unwrap_or_clone(other).into_iter().enumerate() {
-                    if let Some(first) = own.get(&name) {
-                        let elsewhere = self.file_name(first.key_place);
+                    if let Some(known) = own.get(&name) {
+                        let elsewhere = self.file_name(known.key_place);
                         let message = format!("`{name}` in `{key}` has been defined before, in {elsewhere}");
                         self.findings.push(Finding::error(message).on(member.key_place));
                     } else if key == "variables" {
-                        own.shift_insert(at.min(own.len()), name, member);
+                        first.push((at, name, member));
                     } else {
-                        own.insert(name, member);
+                        own.append(name, member);
                     }
                 }
+                own.insert_each(first);
             }
             // The including file's value has the wrong type: the schema will say so.
             _ => {}

@@ -1,12 +1,14 @@
-//! Text → tree. Tokens by `jsonc-parser`; comments and trailing commas are the only liberties.
+//! Text → tree. Comments and trailing commas are the only liberties. `jsonc-parser` explains what is wrong with a text that
+//! this reader refuses, and decodes strings with escapes; trees by way of its own would take twice the time.
 
 use super::guard::{self, Refused};
+use super::members::Members;
 use super::source::{FileId, Place};
-use super::tree::{Member, Members, Node, Value};
+use super::tree::{Member, Node, Value};
 use crate::path::Trail;
 use jsonc_parser::errors::ParseErrorKind as Kind;
 use jsonc_parser::tokens::Token;
-use jsonc_parser::{Scanner, ScannerOptions};
+use jsonc_parser::{CollectOptions, ParseOptions, ParseResult, Scanner, ScannerOptions, parse_to_ast};
 use serde_json::Number;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -29,17 +31,49 @@ pub fn parse_part(
 ) -> Result<(Node, Vec<Refused>), Refused> {
     let start = part.start;
     let text = text.get(part).unwrap_or_default();
-    let mut reader = Reader { text, scanner: Scanner::new(text, &STRICT), file, start, refused: Vec::new() };
-    match reader.document(at)? {
+    let mut reader = Reader { text, next: 0, file, start, refused: Vec::new() };
+    match reader.document(at) {
         Some(node) => Ok((node, reader.refused)),
-        None => {
-            let help = Some("the smallest scene is {\"version\": 1, \"objects\": [{\"shape\": \"sphere\"}]}".into());
-            Err(Refused { at: 0..0, path: None, message: "the file is empty".into(), help })
-        }
+        None => Err(mistake(text, start)),
     }
 }
 
-/// The tokens of strict JSON, and comments.
+/// The first mistake of syntax in a text that begins at the byte `start` of its file.
+fn mistake(text: &str, start: usize) -> Refused {
+    let (at, message, help) = match parse_to_ast(text, &CollectOptions::default(), &strict()) {
+        Err(error) => {
+            let range = error.range();
+            let at = on_characters(text, range.start..range.end);
+            let (message, help) = explain(error.kind(), text.get(at.clone()).unwrap_or_default());
+            (start + at.start..start + at.end, message, help)
+        }
+        Ok(ParseResult { value: None, .. }) => {
+            let help = Some("the smallest scene is {\"version\": 1, \"objects\": [{\"shape\": \"sphere\"}]}".into());
+            (0..0, "the file is empty".to_owned(), help)
+        }
+        // Both parsers accept the same texts: only a slip of ours can bring us here.
+        Ok(_) => (start..start + text.len(), "this is not JSON".to_owned(), None),
+    };
+    Refused { at, path: None, message, help }
+}
+
+/// Strict JSON plus comments and trailing commas.
+fn strict() -> ParseOptions {
+    ParseOptions {
+        allow_comments: true,
+        allow_trailing_commas: true,
+        allow_loose_object_property_names: false,
+        allow_missing_commas: false,
+        allow_single_quoted_strings: false,
+        allow_hexadecimal_numbers: false,
+        allow_unary_plus_numbers: false,
+        allow_bare_decimal_point_numbers: false,
+        allow_non_finite_numbers: false,
+        allow_extended_string_escapes: false,
+    }
+}
+
+/// Strings of strict JSON.
 const STRICT: ScannerOptions = ScannerOptions {
     allow_single_quoted_strings: false,
     allow_hexadecimal_numbers: false,
@@ -104,10 +138,11 @@ fn exact(text: &str) -> Option<Number> {
     Number::from_f64(text.parse().ok()?)
 }
 
-/// Reads the tokens of a text into a tree.
+/// Reads a text into a tree; gives `None` at the first mistake of syntax.
 struct Reader<'t> {
     text: &'t str,
-    scanner: Scanner<'t>,
+    /// The byte that is read next.
+    next: usize,
     file: FileId,
     /// Where the part that is read begins.
     start: usize,
@@ -115,46 +150,41 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    /// The only value of the text; `None` if the text has none.
-    fn document(&mut self, at: &Trail<'_>) -> Result<Option<Node>, Refused> {
-        let node = match self.token()? {
-            Some(token) => Some(self.node(token, at)?),
-            None => None,
-        };
-        match self.token()? {
-            Some(_) => Err(self.mistake(&Kind::MultipleRootJsonValues)),
-            None => Ok(node),
+    /// The only value of the text.
+    fn document(&mut self, at: &Trail<'_>) -> Option<Node> {
+        self.skip_blanks();
+        let node = self.node(at)?;
+        self.skip_blanks();
+        (self.next == self.text.len()).then_some(node)
+    }
+
+    fn peek(&self) -> Option<u8> {
+        self.text.as_bytes().get(self.next).copied()
+    }
+
+    /// Reads a byte if it is the next.
+    fn take(&mut self, byte: u8) -> bool {
+        let is_next = self.peek() == Some(byte);
+        self.next += usize::from(is_next);
+        is_next
+    }
+
+    /// Skips white space and comments.
+    fn skip_blanks(&mut self) {
+        while let Some(byte) = self.peek() {
+            self.next = match byte {
+                b' ' | b'\t' | b'\n' | b'\r' | b'\x0b' | b'\x0c' => self.next + 1,
+                b'/' => match guard::skip_comment(self.text.as_bytes(), self.next) {
+                    last if last > self.next => last + 1,
+                    _ => return,
+                },
+                0x80.. => match self.text.get(self.next..).and_then(|rest| rest.chars().next()) {
+                    Some(blank) if blank.is_whitespace() => self.next + blank.len_utf8(),
+                    _ => return,
+                },
+                _ => return,
+            };
         }
-    }
-
-    /// The next token that is no comment; `None` at the end of the text.
-    fn token(&mut self) -> Result<Option<Token<'t>>, Refused> {
-        loop {
-            match self.scanner.scan() {
-                Ok(Some(Token::CommentLine(_) | Token::CommentBlock(_))) => {}
-                Ok(token) => return Ok(token),
-                Err(error) => {
-                    let range = error.range();
-                    return Err(self.mistake_in(error.kind(), range.start..range.end));
-                }
-            }
-        }
-    }
-
-    /// A mistake of syntax at the current token.
-    fn mistake(&self, kind: &Kind) -> Refused {
-        self.mistake_in(kind, self.range())
-    }
-
-    fn mistake_in(&self, kind: &Kind, range: Range<usize>) -> Refused {
-        let at = on_characters(self.text, range);
-        let (message, help) = explain(kind, self.text.get(at.clone()).unwrap_or_default());
-        Refused { at: self.start + at.start..self.start + at.end, path: None, message, help }
-    }
-
-    /// Bytes of the current token.
-    fn range(&self) -> Range<usize> {
-        self.scanner.token_start()..self.scanner.token_end()
     }
 
     fn place(&self, range: Range<usize>) -> Option<Place> {
@@ -167,103 +197,196 @@ impl<'t> Reader<'t> {
         self.refused.push(Refused { at: bytes, path: Some(at.into()), message, help: Some(help.to_owned()) });
     }
 
-    /// The value that begins with the current token.
-    fn node(&mut self, token: Token<'t>, at: &Trail<'_>) -> Result<Node, Refused> {
-        let start = self.scanner.token_start();
-        let value = match token {
-            Token::OpenBrace => Value::Object(Arc::new(self.members(at)?)),
-            Token::OpenBracket => Value::Array(Arc::new(self.elements(at)?)),
-            Token::String(text) => Value::String(text.into_owned()),
-            Token::Boolean(value) => Value::Bool(value),
-            Token::Number(text) => Value::Number(self.number(text, at)),
-            Token::Null => Value::Null,
-            Token::CloseBracket => return Err(self.mistake(&Kind::UnexpectedCloseBracket)),
-            Token::CloseBrace => return Err(self.mistake(&Kind::UnexpectedCloseBrace)),
-            Token::Comma => return Err(self.mistake(&Kind::UnexpectedComma)),
-            Token::Colon => return Err(self.mistake(&Kind::UnexpectedColon)),
-            Token::Word(_) | Token::CommentLine(_) | Token::CommentBlock(_) => {
-                return Err(self.mistake(&Kind::UnexpectedWord));
-            }
+    fn node(&mut self, at: &Trail<'_>) -> Option<Node> {
+        let start = self.next;
+        let value = match self.peek()? {
+            b'{' => Value::Object(Arc::new(self.members(at)?)),
+            b'[' => Value::Array(Arc::new(self.elements(at)?)),
+            b'"' => Value::String(self.string()?.into_owned()),
+            b'-' | b'0'..=b'9' => Value::Number(self.number(at)?),
+            b't' => self.word("true", Value::Bool(true))?,
+            b'f' => self.word("false", Value::Bool(false))?,
+            b'n' => self.word("null", Value::Null)?,
+            _ => return None,
         };
-        Ok(Node { place: self.place(start..self.scanner.token_end()), value })
+        Some(Node { place: self.place(start..self.next), value })
     }
 
-    fn number(&mut self, text: &str, at: &Trail<'_>) -> Number {
-        exact(text).unwrap_or_else(|| {
-            self.refuse(self.range(), at, format!("`{text}` is too large a number"), "numbers reach up to 3.4e38");
+    fn word(&mut self, word: &str, value: Value) -> Option<Value> {
+        let rest = self.text.get(self.next..)?;
+        self.next += word.len();
+        rest.starts_with(word).then_some(value)
+    }
+
+    fn string(&mut self) -> Option<Cow<'t, str>> {
+        let start = self.next;
+        if !self.take(b'"') {
+            return None;
+        }
+        let rest = self.text.get(self.next..)?;
+        let length = rest.bytes().position(|byte| matches!(byte, b'"' | b'\\'))?;
+        let (plain, rest) = rest.split_at_checked(length)?;
+        if rest.starts_with('"') {
+            self.next += length + 1;
+            return Some(Cow::Borrowed(plain));
+        }
+        self.next = guard::skip_string(self.text.as_bytes(), start) + 1;
+        match Scanner::new(self.text.get(start..self.next)?, &STRICT).scan().ok()?? {
+            Token::String(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    fn number(&mut self, at: &Trail<'_>) -> Option<Number> {
+        let start = self.next;
+        self.take(b'-');
+        if !self.take(b'0') {
+            self.digits()?;
+        }
+        if self.take(b'.') {
+            self.digits()?;
+        }
+        if self.take(b'e') || self.take(b'E') {
+            let _ = self.take(b'-') || self.take(b'+');
+            self.digits()?;
+        }
+        let text = self.text.get(start..self.next)?;
+        Some(exact(text).unwrap_or_else(|| {
+            let message = format!("`{text}` is too large a number");
+            self.refuse(start..self.next, at, message, "numbers reach up to 3.4e38");
             1.into()
-        })
+        }))
     }
 
-    /// The elements of an array after its `[`.
-    fn elements(&mut self, at: &Trail<'_>) -> Result<Vec<Node>, Refused> {
-        let start = self.scanner.token_start();
+    /// Reads one digit or more.
+    fn digits(&mut self) -> Option<()> {
+        let start = self.next;
+        while self.peek().is_some_and(|byte| byte.is_ascii_digit()) {
+            self.next += 1;
+        }
+        (self.next > start).then_some(())
+    }
+
+    fn elements(&mut self, at: &Trail<'_>) -> Option<Vec<Node>> {
         let mut elements = Vec::new();
-        let mut token = self.token()?;
+        self.next += 1;
         loop {
-            match token {
-                Some(Token::CloseBracket) => return Ok(elements),
-                Some(token) => elements.push(self.node(token, &at.index(elements.len()))?),
-                None => return Err(self.mistake_in(&Kind::UnterminatedArray, start..self.scanner.token_end())),
+            self.skip_blanks();
+            if self.take(b']') {
+                return Some(elements);
             }
-            let end = self.scanner.token_end();
-            token = match self.token()? {
-                Some(Token::Comma) => self.token()?,
-                Some(Token::OpenBrace | Token::OpenBracket | Token::String(_)) => return Err(self.no_comma(end)),
-                Some(Token::Boolean(_) | Token::Number(_) | Token::Null) => return Err(self.no_comma(end)),
-                other => other,
-            };
+            elements.push(self.node(&at.index(elements.len()))?);
+            self.skip_blanks();
+            if !self.take(b',') && self.peek() != Some(b']') {
+                return None;
+            }
         }
     }
 
-    /// The members of an object after its `{`.
-    fn members(&mut self, at: &Trail<'_>) -> Result<Members, Refused> {
-        let start = self.scanner.token_start();
+    fn members(&mut self, at: &Trail<'_>) -> Option<Members> {
         let mut members = Members::default();
-        let mut token = self.token()?;
+        self.next += 1;
         loop {
-            match token {
-                Some(Token::CloseBrace) => return Ok(members),
-                Some(Token::String(key)) => self.member(&mut members, key, at)?,
-                Some(Token::Word(_) | Token::Number(_) | Token::Boolean(_) | Token::Null) => {
-                    return Err(self.mistake(&Kind::ExpectedStringObjectProperty));
-                }
-                Some(_) => return Err(self.mistake(&Kind::UnexpectedTokenInObject)),
-                None => return Err(self.mistake_in(&Kind::UnterminatedObject, start..self.scanner.token_end())),
+            self.skip_blanks();
+            if self.take(b'}') {
+                return Some(members);
             }
-            let end = self.scanner.token_end();
-            token = match self.token()? {
-                Some(Token::Comma) => self.token()?,
-                Some(Token::String(_) | Token::Word(_) | Token::Number(_)) => return Err(self.no_comma(end)),
-                Some(Token::Boolean(_) | Token::Null) => return Err(self.no_comma(end)),
-                other => other,
-            };
+            self.member(&mut members, at)?;
+            self.skip_blanks();
+            if !self.take(b',') && self.peek() != Some(b'}') {
+                return None;
+            }
         }
     }
 
-    /// Reads the member that begins with the current token, its key.
-    fn member(&mut self, members: &mut Members, key: Cow<'t, str>, at: &Trail<'_>) -> Result<(), Refused> {
-        let range = self.range();
-        if self.token()? != Some(Token::Colon) {
-            return Err(self.mistake(&Kind::ExpectedColonAfterObjectKey));
+    fn member(&mut self, members: &mut Members, at: &Trail<'_>) -> Option<()> {
+        let start = self.next;
+        let key = self.string()?;
+        let range = start..self.next;
+        self.skip_blanks();
+        if !self.take(b':') {
+            return None;
         }
+        self.skip_blanks();
         let at = at.key(&key);
-        let node = match self.token()? {
-            Some(token) => self.node(token, &at)?,
-            None => return Err(self.mistake(&Kind::ExpectedObjectValue)),
-        };
-        if members.contains_key(&*key) {
+        let node = self.node(&at)?;
+        if members.contains_key(&key) {
             let message = format!("`{key}` stands here a second time");
             self.refuse(range, &at, message, "join the two, or remove one");
         } else {
             let key_place = self.place(range);
-            members.insert(key.into_owned(), Member { key_place, node });
+            members.append(key.into_owned(), Member { key_place, node });
         }
-        Ok(())
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jsonc_parser::ast;
+    use jsonc_parser::common::Ranged;
+
+    const TEXT: &str = "/* [ */ {\"a\": [1, -2.5e+3, 0.25, 1e400, true, false, null, ], // ]\n \u{a0}\"a\": \"x\", \
+        \"\\u00e9\\ud83d\\ude00\": \"\u{e9}\\n\\\"\", \"b\": {}, \"c\": [[], {\"d\": \"\"}, -0, 10]}";
+    const PIECES: [&str; 32] = [
+        "{", "}", "[", "]", ",", ":", "\"", "\\", "/", "*", "//", "/*", "*/", "\n", "\r", " ", "\u{a0}", "\u{e9}", "0",
+        "7", "-", "+", ".", "e", "x", "\\u12", "\\'", "'", "true", "nul", "\t", "\u{b}",
+    ];
+
+    /// The tree of a text by way of the syntax tree of `jsonc-parser`.
+    fn expected(value: &ast::Value<'_>) -> Node {
+        let place = |range: &dyn Ranged| {
+            let at = |byte: usize| u32::try_from(byte).unwrap();
+            Some(Place { file: FileId::MAIN, start: at(range.start()), end: at(range.end()) })
+        };
+        let tree = match value {
+            ast::Value::NullKeyword(_) => Value::Null,
+            ast::Value::BooleanLit(literal) => Value::Bool(literal.value),
+            ast::Value::StringLit(literal) => Value::String(literal.value.to_string()),
+            ast::Value::NumberLit(literal) => Value::Number(exact(literal.value).unwrap_or(1.into())),
+            ast::Value::Array(array) => Value::Array(Arc::new(array.elements.iter().map(expected).collect())),
+            ast::Value::Object(object) => {
+                let mut members = Members::default();
+                for property in object.properties.iter().rev() {
+                    let ast::ObjectPropName::String(name) = &property.name else { panic!("a key without quotes") };
+                    let member = Member { key_place: place(name), node: expected(&property.value) };
+                    members.insert(name.value.to_string(), member);
+                }
+                Value::Object(Arc::new(members))
+            }
+        };
+        Node { place: place(value), value: tree }
     }
 
-    /// The mistake of a comma that is missing behind the byte `end`.
-    fn no_comma(&self, end: usize) -> Refused {
-        self.mistake_in(&Kind::ExpectedComma, end..end)
+    fn check(text: &str) -> bool {
+        let parsed = parse_to_ast(text, &CollectOptions::default(), &strict());
+        let found = parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root);
+        match (parsed.ok().and_then(|parsed| parsed.value), found) {
+            (Some(value), Ok((node, _))) => assert_eq!(node, expected(&value), "{text:?}"),
+            (None, Err(refused)) => assert_ne!(refused.message, "this is not JSON", "{text:?}"),
+            (value, found) => panic!("{text:?}: {value:?}, {found:?}"),
+        }
+        parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root).is_ok()
+    }
+
+    #[test]
+    fn both_parsers_accept_the_same_texts_and_read_them_alike() {
+        assert!(check(TEXT));
+        let starts: Vec<usize> = (0..=TEXT.len()).filter(|at| TEXT.is_char_boundary(*at)).collect();
+        let (mut accepted, mut refused) = (0, 0);
+        for (i, at) in starts.iter().enumerate() {
+            for piece in PIECES {
+                for end in starts.iter().skip(i).take(3) {
+                    match check(&format!("{}{piece}{}", &TEXT[..*at], &TEXT[*end..])) {
+                        true => accepted += 1,
+                        false => refused += 1,
+                    }
+                }
+            }
+            check(&TEXT[..*at]);
+            check(&TEXT[*at..]);
+        }
+        assert!(accepted > 1000 && refused > 1000, "{accepted} {refused}");
     }
 }
