@@ -5,8 +5,8 @@ use foldhash::fast::RandomState;
 use hashbrown::HashTable;
 use std::hash::BuildHasher;
 
-/// Maximum number of members that are searched one after another; more are found by the hash of their key. Most objects
-/// of a scene have one to four members, for which a hash table costs more than the search.
+/// Maximum number of members for linear search; larger objects have a hash table. Most objects of a
+/// scene have one to four members, and a hash table costs more than their search.
 const MAX_SEARCHED: usize = 8;
 
 /// The members of a JSON object in the order of the file, each key once.
@@ -70,12 +70,21 @@ impl Members {
         Some(&mut self.entries.get_mut(at)?.1)
     }
 
-    /// Replaces the member with a key, or appends it.
+    /// Replaces the member with a key, or appends a member.
     pub fn insert(&mut self, key: String, member: Member) {
         match self.get_mut(&key) {
             Some(known) => *known = member,
             None => self.append(key, member),
         }
+    }
+
+    /// The member with a key. Appends `new` if no member has the key.
+    pub fn get_or_append(&mut self, key: &str, new: Member) -> Option<&mut Member> {
+        let at = self.position(key).unwrap_or(self.entries.len());
+        if at == self.entries.len() {
+            self.append(key.to_owned(), new);
+        }
+        self.at_mut(at)
     }
 
     /// Appends a member whose key is new.
@@ -92,7 +101,8 @@ impl Members {
         }
     }
 
-    /// Inserts members whose keys are new, one after another, each at its position or else at the end.
+    /// Inserts members with new keys one after another, each at its position, or at the end if the
+    /// position is beyond it.
     pub fn insert_each(&mut self, new: impl IntoIterator<Item = (usize, String, Member)>) {
         for (at, key, member) in new {
             self.entries.insert(at.min(self.entries.len()), (key, member));
@@ -107,12 +117,15 @@ impl Members {
         Some(member)
     }
 
+    /// Rebuilds the hash table.
     fn find_positions(&mut self) {
         self.positions = None;
         if self.entries.len() > MAX_SEARCHED {
             let Positions { mut table, state } = Positions::default();
             let hash = |at: &usize| state.hash_one(self.entries.get(*at).map_or("", |(key, _)| key));
-            (0..self.entries.len()).for_each(|at| drop(table.insert_unique(hash(&at), at, hash)));
+            for at in 0..self.entries.len() {
+                table.insert_unique(hash(&at), at, hash);
+            }
             self.positions = Some(Positions { table, state });
         }
     }
@@ -155,7 +168,7 @@ impl FromIterator<(String, Member)> for Members {
     }
 }
 
-/// The order does not count.
+/// Objects are equal whatever the order of their members.
 impl PartialEq for Members {
     fn eq(&self, other: &Self) -> bool {
         self.len() == other.len() && self.iter().all(|(key, member)| other.get(key) == Some(member))

@@ -1,5 +1,8 @@
-//! Text → tree. Comments and trailing commas are the only liberties. `jsonc-parser` explains what is wrong with a text that
-//! this reader refuses, and decodes strings with escapes; trees by way of its own would take twice the time.
+//! Parser from text to tree. Comments and trailing commas are the only liberties.
+//!
+//! The parser builds nodes directly from the text. `jsonc-parser` decodes strings with escapes, and
+//! explains the first mistake of a text that this parser refuses; building nodes from its syntax tree
+//! took more than twice the time.
 
 use super::guard::{self, Refused};
 use super::members::Members;
@@ -22,7 +25,8 @@ pub fn parse(text: &str, file: FileId) -> Result<(Node, Vec<Refused>), Refused> 
     parse_part(text, 0..text.len(), file, &Trail::Root)
 }
 
-/// The same of the value that stands in a part of a text whose depth and size were checked; the value's path is `at`.
+/// Parses the value in a part of a text whose depth and size were checked. `at` is the path of the
+/// value.
 pub fn parse_part(
     text: &str,
     part: Range<usize>,
@@ -38,7 +42,7 @@ pub fn parse_part(
     }
 }
 
-/// The first mistake of syntax in a text that begins at the byte `start` of its file.
+/// First syntax error in a text that begins at the byte `start` of its file.
 fn mistake(text: &str, start: usize) -> Refused {
     let (at, message, help) = match parse_to_ast(text, &CollectOptions::default(), &strict()) {
         Err(error) => {
@@ -57,7 +61,7 @@ fn mistake(text: &str, start: usize) -> Refused {
     Refused { at, path: None, message, help }
 }
 
-/// Strict JSON plus comments and trailing commas.
+/// Parser options: strict JSON plus comments and trailing commas.
 fn strict() -> ParseOptions {
     ParseOptions {
         allow_comments: true,
@@ -73,7 +77,7 @@ fn strict() -> ParseOptions {
     }
 }
 
-/// Strings of strict JSON.
+/// Scanner options: strings of strict JSON.
 const STRICT: ScannerOptions = ScannerOptions {
     allow_single_quoted_strings: false,
     allow_hexadecimal_numbers: false,
@@ -138,19 +142,19 @@ fn exact(text: &str) -> Option<Number> {
     Number::from_f64(text.parse().ok()?)
 }
 
-/// Reads a text into a tree; gives `None` at the first mistake of syntax.
+/// Recursive-descent parser of a text. Its methods return `None` at the first syntax error.
 struct Reader<'t> {
     text: &'t str,
-    /// The byte that is read next.
+    /// Offset of the next byte.
     next: usize,
     file: FileId,
-    /// Where the part that is read begins.
+    /// Offset of the text in its file.
     start: usize,
     refused: Vec<Refused>,
 }
 
 impl<'t> Reader<'t> {
-    /// The only value of the text.
+    /// Parses the text's only value.
     fn document(&mut self, at: &Trail<'_>) -> Option<Node> {
         self.skip_blanks();
         let node = self.node(at)?;
@@ -162,7 +166,7 @@ impl<'t> Reader<'t> {
         self.text.as_bytes().get(self.next).copied()
     }
 
-    /// Reads a byte if it is the next.
+    /// Consumes the next byte if it is `byte`.
     fn take(&mut self, byte: u8) -> bool {
         let is_next = self.peek() == Some(byte);
         self.next += usize::from(is_next);
@@ -258,7 +262,7 @@ impl<'t> Reader<'t> {
         }))
     }
 
-    /// Reads one digit or more.
+    /// Consumes one or more digits.
     fn digits(&mut self) -> Option<()> {
         let start = self.next;
         while self.peek().is_some_and(|byte| byte.is_ascii_digit()) {
@@ -334,7 +338,7 @@ mod tests {
         "7", "-", "+", ".", "e", "x", "\\u12", "\\'", "'", "true", "nul", "\t", "\u{b}",
     ];
 
-    /// The tree of a text by way of the syntax tree of `jsonc-parser`.
+    /// Tree of a text, converted from the syntax tree of `jsonc-parser`.
     fn expected(value: &ast::Value<'_>) -> Node {
         let place = |range: &dyn Ranged| {
             let at = |byte: usize| u32::try_from(byte).unwrap();

@@ -36,10 +36,8 @@ fn descend(node: &mut Node, steps: &[String], at: Path, value: serde_json::Value
                 members.remove(step);
                 return Ok(());
             }
-            if !members.contains_key(step) {
-                members.append(step.clone(), Member { key_place: None, node: serde_json::json!({}).into() });
-            }
-            match members.get_mut(step) {
+            let empty = Member { key_place: None, node: serde_json::json!({}).into() };
+            match members.get_or_append(step, empty) {
                 Some(member) => descend(&mut member.node, rest, at.key(step.as_str()), value),
                 None => Ok(()),
             }

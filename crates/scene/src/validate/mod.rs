@@ -39,7 +39,8 @@ const MAX_FINDINGS: usize = 200;
 pub struct Validated {
     /// The scene as plain JSON, without what is wrong; nothing when hardly anything is right.
     pub json: Option<Plain>,
-    /// Textures that were written in place, by the names that they got. Those of a whole scene are in `json`, and `Null` here.
+    /// Inline textures by name. The inline textures of a whole scene are part of `json`, and `Null`
+    /// here.
     pub textures: Vec<(String, Plain)>,
     /// All that is wrong.
     pub findings: Vec<Finding>,

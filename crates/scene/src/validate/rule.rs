@@ -139,7 +139,7 @@ impl Rule {
         self.member(key).map(|(_, rule)| rule)
     }
 
-    /// The rule of a key, and the key for good.
+    /// The rule of a key, and the key itself, borrowed from the schema if it is fixed there.
     pub fn member(&self, key: &str) -> Option<(Cow<'static, str>, RuleId)> {
         let field = self.fields.iter().flatten().find(|(name, _)| *name == key);
         let other = || self.others.map(|rule| (key.to_owned().into(), rule));

@@ -78,7 +78,7 @@ impl Walk<'_> {
 
     /// Whether all keys stand that must stand.
     fn required(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) -> bool {
-        let missing: Vec<&str> = rule.required.iter().copied().filter(|key| !members.contains_key(*key)).collect();
+        let missing: Vec<&str> = rule.required.iter().copied().filter(|key| !members.contains_key(key)).collect();
         if missing.is_empty() {
             return true;
         }
@@ -94,7 +94,7 @@ impl Walk<'_> {
     /// Complains when not exactly one of some keys stands.
     fn exactly_one(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) {
         let keys = rule.exactly_one.iter().copied();
-        let found = keys.clone().filter(|key| members.contains_key(*key));
+        let found = keys.clone().filter(|key| members.contains_key(key));
         let count = found.clone().count();
         if rule.exactly_one.is_empty() || count == 1 {
             return;
