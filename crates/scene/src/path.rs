@@ -24,13 +24,13 @@ impl Path {
     /// One step further, into an object.
     #[must_use]
     pub fn key(&self, key: impl Into<String>) -> Self {
-        self.clone().step(Step::Key(key.into()))
+        self.step(Step::Key(key.into()))
     }
 
     /// One step further, into an array.
     #[must_use]
     pub fn index(&self, index: usize) -> Self {
-        self.clone().step(Step::Index(index))
+        self.step(Step::Index(index))
     }
 
     /// Further by a written path such as `vertices[3].x`, which the tracer's own errors name.
@@ -86,9 +86,11 @@ impl Path {
         self.0.pop();
     }
 
-    fn step(mut self, step: Step) -> Self {
-        self.0.push(step);
-        self
+    fn step(&self, step: Step) -> Self {
+        let mut steps = Vec::with_capacity(self.0.len() + 1);
+        steps.extend_from_slice(&self.0);
+        steps.push(step);
+        Self(steps)
     }
 }
 
@@ -140,11 +142,17 @@ impl<'t> Trail<'t> {
 
 impl From<&Trail<'_>> for Path {
     fn from(trail: &Trail<'_>) -> Self {
-        match trail {
-            Trail::Root => Self::root(),
-            Trail::Key(parent, key) => Self::from(*parent).step(Step::Key((*key).to_owned())),
-            Trail::Index(parent, index) => Self::from(*parent).step(Step::Index(*index)),
+        fn steps(trail: &Trail<'_>, after: usize) -> Vec<Step> {
+            let (parent, step) = match trail {
+                Trail::Root => return Vec::with_capacity(after),
+                Trail::Key(parent, key) => (parent, Step::Key((*key).to_owned())),
+                Trail::Index(parent, index) => (parent, Step::Index(*index)),
+            };
+            let mut steps = steps(parent, after + 1);
+            steps.push(step);
+            steps
         }
+        Self(steps(trail, 0))
     }
 }
 

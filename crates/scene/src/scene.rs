@@ -8,7 +8,7 @@ use crate::fingerprint::{Fingerprint, digests, mesh_files};
 use crate::import::Content;
 use crate::integrator::IntegratorChoice;
 use crate::motion::{self, Tracks, read_list};
-use crate::path::Path as ScenePath;
+use crate::path::{Path as ScenePath, Trail};
 use crate::relocate::relocate;
 use crate::report::{Finding, Problems};
 use crate::store::{Bundle, Store};
@@ -374,8 +374,7 @@ impl Scene {
     /// The same inside of an item that was written at `place`, to which the first `depth` steps lead.
     fn place_within(&self, place: Place, path: &ScenePath, depth: usize) -> Option<(Option<Place>, usize)> {
         let text = &self.sources().get(place.file)?.text;
-        let (node, _) =
-            parse_part(text, place.start as usize..place.end as usize, place.file, ScenePath::root()).ok()?;
+        let (node, _) = parse_part(text, place.start as usize..place.end as usize, place.file, &Trail::Root).ok()?;
         let inner = ScenePath::from_steps(path.steps().iter().skip(depth));
         let (found, steps) = node.place_of(&inner);
         Some((found, depth + steps))

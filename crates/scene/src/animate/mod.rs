@@ -86,7 +86,7 @@ fn resolved(walk: &mut Walk<'_>, tree: &Node) -> Node {
         if let Some((paths, member)) = paths.zip(members.get_mut("paths")) {
             member.node.value = Value::Object(paths);
         }
-        members.shift_remove("variables");
+        members.remove("variables");
     }
     resolved
 }

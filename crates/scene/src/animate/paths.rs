@@ -87,7 +87,10 @@ impl<'s> Walk<'s> {
                 continue;
             };
             if let Some(node) = node {
-                resolved.get_or_insert_with(|| (**written).clone())[i].node = node.clone();
+                let resolved = resolved.get_or_insert_with(|| (**written).clone());
+                if let Some(member) = resolved.at_mut(i) {
+                    member.node = node.clone();
+                }
             }
         }
         resolved.map(Arc::new)

@@ -88,7 +88,10 @@ impl Walk<'_> {
         let mut resolved = None;
         for (i, (key, member)) in members.iter().enumerate() {
             if let Some(node) = self.node(&member.node, &at.key(key)) {
-                Arc::make_mut(resolved.get_or_insert_with(|| Arc::clone(members)))[i].node = node;
+                let resolved = Arc::make_mut(resolved.get_or_insert_with(|| Arc::clone(members)));
+                if let Some(member) = resolved.at_mut(i) {
+                    member.node = node;
+                }
             }
         }
         resolved

@@ -50,14 +50,18 @@ pub fn at_the_middle(lamps: &[Lamp], described: bool, bounds: &Aabb) -> Option<I
 /// Warns of a still scene whose lights bring next to nothing to its middle, and to the places halfway to its corners, where
 /// nothing else gives light.
 pub fn warning(scene: &Description, lamps: &[Lamp], bounds: &Aabb) -> Option<Finding> {
+    let is_dark = |value: f32| value * fun::exp2(scene.tone.exposure_stops) < DARK;
     let (center, half) = (bounds.center(), bounds.extent() * 0.25);
     let corners = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0);
     let (number, middle) = brightest(lamps, center)?;
+    // All lights are evaluated at each corner, so that most scenes end here.
+    if scene.animation.frames != 1 || !is_dark(middle) {
+        return None;
+    }
     let most = corners.filter_map(|corner| brightest(lamps, center + corner * half)).map(|(_, value)| value);
     let most = most.fold(middle, f32::max);
-    let exposed = most * fun::exp2(scene.tone.exposure_stops);
     // Lights of no light at all are warned of by themselves.
-    if scene.animation.frames != 1 || !(exposed < DARK && most > 0.0) {
+    if !(is_dark(most) && most > 0.0) {
         return None;
     }
     let middle = shown(significant(middle));

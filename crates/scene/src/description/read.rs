@@ -4,9 +4,9 @@ use super::Description;
 use crate::document::Node;
 use crate::path::Path;
 use crate::report::Finding;
-use crate::validate::validate;
+use crate::validate::{Plain, validate};
 use serde::Deserialize;
-use serde_json::{Map, Value};
+use std::borrow::Cow;
 
 /// The types of a tree, as far as it fits them, with the names of textures that were written in place; and all that is wrong
 /// with it.
@@ -28,26 +28,23 @@ pub(crate) fn described(tree: &Node, findings: &mut Vec<Finding>) -> Option<(Des
 
 /// The smallest section or item of a description that the types refuse by itself; the root if there is none. The same
 /// deserializer serves as for the whole: each one more would double what this crate takes to build.
-fn refused_part(json: &Value) -> Path {
-    let refused = |key: &str, value: Value| {
-        let only = Map::from_iter([("version".to_owned(), 1.into()), (key.to_owned(), value)]);
-        Description::deserialize(&Value::Object(only)).is_err()
+fn refused_part(json: &Plain) -> Path {
+    let refused = |key: &Cow<'static, str>, value: Plain| {
+        let only = vec![("version".into(), Plain::Number(1.into())), (key.clone(), value)];
+        Description::deserialize(&Plain::Object(only)).is_err()
     };
     let root = Path::root();
-    let Some((key, value)) = json.as_object().into_iter().flatten().find(|(key, value)| refused(key, (*value).clone()))
-    else {
-        return root;
-    };
-    let section = root.key(key);
+    let Plain::Object(sections) = json else { return root };
+    let Some((key, value)) = sections.iter().find(|(key, value)| refused(key, value.clone())) else { return root };
+    let section = root.key(&**key);
     let item = match value {
-        Value::Array(items) => {
-            let at = items.iter().position(|item| refused(key, Value::Array(vec![item.clone()])));
+        Plain::Array(items) => {
+            let at = items.iter().position(|item| refused(key, Plain::Array(vec![item.clone()])));
             at.map(|at| section.index(at))
         }
-        Value::Object(items) => {
-            let one = |name: &String, item: &Value| Value::Object(Map::from_iter([(name.clone(), item.clone())]));
-            let found = items.iter().find(|(name, item)| refused(key, one(name, item)));
-            found.map(|(name, _)| section.key(name))
+        Plain::Object(items) => {
+            let found = items.iter().find(|(name, item)| refused(key, Plain::member(name.clone(), item.clone())));
+            found.map(|(name, _)| section.key(&**name))
         }
         _ => None,
     };

@@ -10,7 +10,10 @@ use glam::{DMat3, Mat3};
 use juggler_math::quaternion;
 use juggler_math::{DVec3, Transform, Vec3};
 use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 
 /// One step; the first of a list happens first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,14 +34,37 @@ pub enum TransformStep {
 }
 
 /// A transform as it may be written.
-#[derive(Deserialize, JsonSchema)]
-#[serde(untagged)]
-#[schemars(rename = "Transform")]
+#[derive(JsonSchema)]
+#[schemars(untagged, rename = "Transform")]
 pub enum Steps {
     /// Steps in order; the first happens first.
     Several(Vec<TransformStep>),
     /// A single step.
     One(TransformStep),
+}
+
+impl<'de> Deserialize<'de> for Steps {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct StepsVisitor;
+
+        impl<'de> Visitor<'de> for StepsVisitor {
+            type Value = Steps;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an array of transform steps, or one step")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, steps: A) -> Result<Steps, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(steps)).map(Steps::Several)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, step: A) -> Result<Steps, A::Error> {
+                TransformStep::deserialize(MapAccessDeserializer::new(step)).map(Steps::One)
+            }
+        }
+
+        deserializer.deserialize_any(StepsVisitor)
+    }
 }
 
 /// Steps from an array of them or from one.

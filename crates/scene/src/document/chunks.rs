@@ -5,7 +5,7 @@ use super::guard::{Refused, skip_comment, skip_string};
 use super::parse::parse_part;
 use super::source::FileId;
 use super::tree::Node;
-use crate::path::{Path, Step};
+use crate::path::Trail;
 use std::ops::Range;
 
 /// Sections that may hold long lists.
@@ -46,9 +46,9 @@ impl LongList {
 
     fn trees(&self, text: &str, file: FileId, first: usize, chunk: &[Range<usize>]) -> Chunk {
         let (mut nodes, mut refused) = (Vec::with_capacity(chunk.len()), Vec::new());
+        let section = Trail::Root.key(self.key);
         for (i, element) in chunk.iter().enumerate() {
-            let path = Path::from_steps(&[Step::Key(self.key.to_owned()), Step::Index(first + i)]);
-            let (node, more) = parse_part(text, element.clone(), file, path)?;
+            let (node, more) = parse_part(text, element.clone(), file, &section.index(first + i))?;
             nodes.push(node);
             refused.extend(more);
         }

@@ -63,19 +63,19 @@ pub fn check(text: &str) -> Result<(), Refused> {
         match byte {
             b'"' => i = skip_string(bytes, i),
             b'/' => i = skip_comment(bytes, i),
+            b'[' | b'{' if depth == MAX_DEPTH => {
+                let message = format!("arrays and objects are nested deeper than the limit of {MAX_DEPTH}");
+                return Err(Refused { at: i..i + 1, path: Some(path_after(text, i)), message, help: None });
+            }
             b'[' | b'{' => depth += 1,
             b']' | b'}' => depth = depth.saturating_sub(1),
+            b',' if values == MAX_VALUES => {
+                let message = format!("the file holds more than the limit of {MAX_VALUES} values");
+                let help = Some("put large meshes into files of their own (OBJ, PLY, STL)".into());
+                return Err(Refused { at: i..i + 1, path: Some(path_after(text, i)), message, help });
+            }
             b',' => values += 1,
             _ => {}
-        }
-        if depth > MAX_DEPTH {
-            let message = format!("arrays and objects are nested deeper than the limit of {MAX_DEPTH}");
-            return Err(Refused { at: i..i + 1, path: Some(path_after(text, i)), message, help: None });
-        }
-        if values > MAX_VALUES {
-            let message = format!("the file holds more than the limit of {MAX_VALUES} values");
-            let help = Some("put large meshes into files of their own (OBJ, PLY, STL)".into());
-            return Err(Refused { at: i..i + 1, path: Some(path_after(text, i)), message, help });
         }
         i += 1;
     }

@@ -8,7 +8,8 @@ use super::chunks::{self, LongList};
 use super::guard::{self, Refused};
 use super::source::{FileId, Place, Sources};
 use super::tree::{Member, Node, Value};
-use super::{Unreadable, parse};
+use super::{Unreadable, parse, parse_part};
+use crate::path::Trail;
 use crate::report::{Finding, plain_io};
 use crate::schema::Schema;
 use crate::store::Store;
@@ -53,13 +54,14 @@ impl<'s> Reader<'s> {
 
     /// The merged tree of the main file, as far as there is one, and its long lists, which are left out of the tree.
     pub fn main(&mut self, name: &str, text: String) -> Option<(Node, Vec<LongList>)> {
-        match chunks::split(&text) {
-            // What is included stands before what includes it: lists of several files are read as trees.
-            Some((rest, lists)) if guard::check(&text).is_ok() && is_alone(&rest) => {
+        let split = chunks::split(&text).filter(|_| guard::check(&text).is_ok());
+        let parsed = split.and_then(|(rest, lists)| Some((alone(&rest)?, lists)));
+        match parsed {
+            Some((parsed, lists)) => {
                 let id = self.sources.add(name, text);
-                Some((self.merged(id, parse(&rest, id))?, lists))
+                Some((self.merged(id, Ok(parsed))?, lists))
             }
-            _ => Some((self.file(name, text)?, Vec::new())),
+            None => Some((self.file(name, text)?, Vec::new())),
         }
     }
 
@@ -97,10 +99,10 @@ impl<'s> Reader<'s> {
             return None;
         };
         let members = Arc::make_mut(members);
-        if let Some(schema) = members.shift_remove("$schema") {
+        if let Some(schema) = members.remove("$schema") {
             self.check_schema(&schema.node);
         }
-        let Some(include) = members.shift_remove("include") else { return Some(tree) };
+        let Some(include) = members.remove("include") else { return Some(tree) };
         for named in self.names(&include.node) {
             if let Some(other) = self.included(named, id) {
                 self.merge(&mut tree, other);
@@ -190,9 +192,7 @@ impl<'s> Reader<'s> {
         for (key, member) in Arc::unwrap_or_clone(from) {
             let known = MAPS.contains(&key.as_str()) || LISTS.contains(&key.as_str());
             match into.get_mut(&key) {
-                None if known => {
-                    into.insert(key, member);
-                }
+                None if known => into.append(key, member),
                 Some(own) if known => self.join(&key, own, member),
                 _ => {}
             }
@@ -207,17 +207,19 @@ impl<'s> Reader<'s> {
             }
             (Value::Object(own), Value::Object(other)) => {
                 let own = Arc::make_mut(own);
+                let mut first = Vec::new();
                 for (at, (name, member)) in Arc::unwrap_or_clone(other).into_iter().enumerate() {
-                    if let Some(first) = own.get(&name) {
-                        let elsewhere = self.file_name(first.key_place);
+                    if let Some(known) = own.get(&name) {
+                        let elsewhere = self.file_name(known.key_place);
                         let message = format!("`{name}` in `{key}` has been defined before, in {elsewhere}");
                         self.findings.push(Finding::error(message).on(member.key_place));
                     } else if key == "variables" {
-                        own.shift_insert(at.min(own.len()), name, member);
+                        first.push((at, name, member));
                     } else {
-                        own.insert(name, member);
+                        own.append(name, member);
                     }
                 }
+                own.insert_each(first);
             }
             // The including file's value has the wrong type: the schema will say so.
             _ => {}
@@ -230,9 +232,11 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// Whether a text is a scene that includes no other.
-fn is_alone(text: &str) -> bool {
-    parse(text, FileId::MAIN).is_ok_and(|(tree, _)| tree.get("include").is_none())
+/// Tree of the main file, if the scene includes no other file. Elements of included lists come before
+/// those of the main file, so scenes of several files are read as trees.
+fn alone(text: &str) -> Option<(Node, Vec<Refused>)> {
+    let parsed = parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root).ok()?;
+    parsed.0.get("include").is_none().then_some(parsed)
 }
 
 pub fn finding(file: FileId, refused: Refused) -> Finding {

@@ -3,6 +3,7 @@
 mod chunks;
 mod guard;
 mod include;
+mod members;
 mod parse;
 mod put;
 mod source;
@@ -10,8 +11,9 @@ mod tree;
 
 pub use guard::{MAX_BYTES, MAX_DEPTH, MAX_VALUES, bytes_to_read};
 pub use include::MAX_FILES;
+pub use members::Members;
 pub use source::{FileId, Place, Source, Sources};
-pub use tree::{Member, Members, Node, Value};
+pub use tree::{Member, Node, Value};
 
 pub(crate) use chunks::LongList;
 pub(crate) use include::finding;

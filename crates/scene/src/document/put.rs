@@ -33,12 +33,14 @@ fn descend(node: &mut Node, steps: &[String], at: Path, value: serde_json::Value
         Value::Object(members) => {
             let members = Arc::make_mut(members);
             if rest.is_empty() && value.is_null() {
-                members.shift_remove(step);
+                members.remove(step);
                 return Ok(());
             }
-            let empty = || Member { key_place: None, node: serde_json::json!({}).into() };
-            let member = members.entry(step.clone()).or_insert_with(empty);
-            descend(&mut member.node, rest, at.key(step.as_str()), value)
+            let empty = Member { key_place: None, node: serde_json::json!({}).into() };
+            match members.get_or_append(step, empty) {
+                Some(member) => descend(&mut member.node, rest, at.key(step.as_str()), value),
+                None => Ok(()),
+            }
         }
         Value::Array(elements) => {
             let count = elements.len();

@@ -1,8 +1,8 @@
 //! JSON in which every value knows where it was written.
 
+use super::members::Members;
 use super::source::Place;
 use crate::path::{Path, Step};
-use indexmap::IndexMap;
 use serde_json::Number;
 use std::sync::Arc;
 
@@ -42,9 +42,6 @@ pub enum Value {
     /// A mistake that has been reported: checks pass over it.
     Wrong,
 }
-
-/// The entries of an object in the order of the file.
-pub type Members = IndexMap<String, Member>;
 
 impl Node {
     /// The entry of an object.

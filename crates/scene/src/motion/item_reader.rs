@@ -8,9 +8,9 @@ use crate::document::{Node, Place, Sources};
 use crate::item::{Item, Template};
 use crate::path::{Path, Step, Trail};
 use crate::report::Finding;
-use crate::validate::{self, NameScope};
+use crate::validate::{self, NameScope, Plain};
 use serde::Deserialize;
-use serde_json::{Map, Value};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// JSON source of an item or of a list of items.
@@ -70,18 +70,18 @@ impl Kind {
     }
 }
 
-/// Value of each item with its path, or `None` after an error.
-pub(crate) type ItemValues = Option<Vec<(Path, ItemValue)>>;
+/// Value of each item with its path.
+pub(crate) type ItemValues<'w> = Vec<(Cow<'w, Path>, ItemValue)>;
 
 /// Reads items of `scene` for a frame. `head` holds the scene's `animation`, `variables` and `paths`. Returns the
-/// values and all findings.
-pub(crate) fn read_items(
+/// values, or `None` after an error, and all findings.
+pub(crate) fn read_items<'w>(
     scene: &Description,
     head: &Node,
     sources: &Sources,
     frame: f64,
-    wanted: &[ItemSource],
-) -> (ItemValues, Vec<Finding>) {
+    wanted: &'w [ItemSource],
+) -> (Option<ItemValues<'w>>, Vec<Finding>) {
     let mut reader = ItemReader::new(Resolver::new(head, sources, &scene.programs, frame), NameScope::Scene(scene));
     wanted.iter().for_each(|wanted| reader.add(wanted));
     reader.finish()
@@ -104,25 +104,25 @@ pub(crate) fn replace_items(
     (true, findings)
 }
 
-struct ItemReader<'s> {
+struct ItemReader<'s, 'w> {
     resolver: Resolver<'s>,
     known: NameScope<'s>,
     findings: Vec<Finding>,
     /// Findings for items without a value, which other findings explain if there are any.
     unresolved: Vec<Finding>,
     /// Validated items so far: source, kind, JSON.
-    read: Vec<(&'s ItemSource, Kind, Value)>,
+    read: Vec<(&'w ItemSource, Kind, Plain)>,
     /// Inline textures by name.
-    textures: Vec<(String, Value)>,
+    textures: Vec<(String, Plain)>,
 }
 
-impl<'s> ItemReader<'s> {
+impl<'s, 'w> ItemReader<'s, 'w> {
     fn new(resolver: Resolver<'s>, known: NameScope<'s>) -> Self {
         Self { resolver, known, findings: Vec::new(), unresolved: Vec::new(), read: Vec::new(), textures: Vec::new() }
     }
 
     /// Evaluates and validates an item.
-    fn add(&mut self, wanted: &'s ItemSource) {
+    fn add(&mut self, wanted: &'w ItemSource) {
         let Some(kind) = Kind::of(&wanted.path) else { return };
         let stands = written_at(&wanted.path);
         let before = self.findings.len();
@@ -134,20 +134,20 @@ impl<'s> ItemReader<'s> {
         self.findings.extend(checked.findings);
         self.findings.extend(checked.warnings);
         match checked.json {
-            Some(Value::Array(list)) if kind == Kind::Lights(0) => {
-                self.read.push((wanted, Kind::Lights(list.len()), Value::Array(list)));
+            Some(Plain::Array(list)) if kind == Kind::Lights(0) => {
+                self.read.push((wanted, Kind::Lights(list.len()), Plain::Array(list)));
             }
             Some(json) => self.read.push((wanted, kind, json)),
             None if self.findings.len() == before => {
                 let message = "this has no value at every time that is asked for";
-                self.unresolved.push(Finding::error(message).at(&stands).on(wanted.place));
+                self.unresolved.push(Finding::error(message).at(&*stands).on(wanted.place));
             }
             None => {}
         }
     }
 
     /// Deserializes the batch. Returns the items with their paths, or `None` after an error, and all findings.
-    fn finish(self) -> (ItemValues, Vec<Finding>) {
+    fn finish(self) -> (Option<ItemValues<'w>>, Vec<Finding>) {
         let mut findings = self.resolver.finish();
         if findings.is_empty() {
             findings.extend(self.unresolved);
@@ -156,7 +156,7 @@ impl<'s> ItemReader<'s> {
         if findings.iter().any(Finding::is_error) {
             return (None, findings);
         }
-        let read: Vec<(&ItemSource, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
+        let read: Vec<(&'w ItemSource, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
         let json = combine(self.read, self.textures);
         match Description::deserialize(&json) {
             Ok(scene) => (Some(split(scene, &read)), findings),
@@ -170,77 +170,77 @@ impl<'s> ItemReader<'s> {
 }
 
 /// Path of an item for messages; an inline texture is reported where it is written.
-fn written_at(path: &Path) -> Path {
+fn written_at(path: &Path) -> Cow<'_, Path> {
     match path.steps() {
         [Step::Key(section), Step::Key(name)] if section == "textures" && name.starts_with('/') => {
-            Path::from_pointer(name)
+            Cow::Owned(Path::from_pointer(name))
         }
-        _ => path.clone(),
+        _ => Cow::Borrowed(path),
     }
 }
 
 /// Combines all items of a batch into the JSON of one scene. Items of maps are keyed by their number in the
 /// batch; a list of objects becomes a group.
-fn combine(read: Vec<(&ItemSource, Kind, Value)>, textures: Vec<(String, Value)>) -> Value {
-    let mut sections: [Map<String, Value>; 4] = Default::default();
-    let (mut lights, mut objects, mut scene) = (Vec::new(), Vec::new(), Map::new());
+fn combine(read: Vec<(&ItemSource, Kind, Plain)>, textures: Vec<(String, Plain)>) -> Plain {
+    let mut sections: [Vec<(Cow<'static, str>, Plain)>; 4] = Default::default();
+    let (mut lights, mut objects) = (Vec::new(), Vec::new());
+    let mut scene = vec![("version".into(), Plain::Number(1.into()))];
     let [cameras, named, materials, groups] = &mut sections;
     for (i, (_, kind, json)) in read.into_iter().enumerate() {
-        let number = |map: &mut Map<String, Value>, json: Value| drop(map.insert(i.to_string(), json));
         match kind {
-            Kind::Camera => number(cameras, json),
-            Kind::Texture => number(named, json),
-            Kind::Material => number(materials, json),
-            Kind::Objects => number(groups, json),
+            Kind::Camera => cameras.push((i.to_string().into(), json)),
+            Kind::Texture => named.push((i.to_string().into(), json)),
+            Kind::Material => materials.push((i.to_string().into(), json)),
+            Kind::Objects => groups.push((i.to_string().into(), json)),
             Kind::Light => lights.push(json),
-            Kind::Lights(_) => lights.extend(if let Value::Array(list) = json { list } else { Vec::new() }),
+            Kind::Lights(_) => lights.extend(if let Plain::Array(list) = json { list } else { Vec::new() }),
             Kind::Object => objects.push(json),
-            Kind::Render => drop(scene.insert("render".into(), json)),
-            Kind::Tone => drop(scene.insert("tone".into(), json)),
-            Kind::Background => drop(scene.insert("background".into(), json)),
-            Kind::Label => drop(scene.insert("background_light_group".into(), json)),
+            Kind::Render => scene.push(("render".into(), json)),
+            Kind::Tone => scene.push(("tone".into(), json)),
+            Kind::Background => scene.push(("background".into(), json)),
+            Kind::Label => scene.push(("background_light_group".into(), json)),
         }
     }
-    named.extend(textures);
-    scene.insert("version".into(), 1.into());
+    named.extend(textures.into_iter().map(|(name, texture)| (name.into(), texture)));
     for (key, map) in ["cameras", "textures", "materials", "groups"].into_iter().zip(sections) {
-        scene.insert(key.into(), Value::Object(map));
+        scene.push((key.into(), Plain::Object(map)));
     }
-    scene.insert("lights".into(), Value::Array(lights));
-    scene.insert("objects".into(), Value::Array(objects));
-    Value::Object(scene)
+    scene.push(("lights".into(), Plain::Array(lights)));
+    scene.push(("objects".into(), Plain::Array(objects)));
+    Plain::Object(scene)
 }
 
 /// Splits the deserialized scene of a batch into items with their paths.
-fn split(scene: Description, read: &[(&ItemSource, Kind)]) -> Vec<(Path, ItemValue)> {
+fn split<'w>(scene: Description, read: &[(&'w ItemSource, Kind)]) -> ItemValues<'w> {
     let Description { render, tone, mut background, background_light_group, cameras, textures, .. } = scene;
     let (mut cameras, mut textures) = (cameras.into_inner(), textures.into_inner());
     let (mut materials, mut groups) = (scene.materials.into_inner(), scene.groups.into_inner());
     let (mut lights, mut objects) = (scene.lights.into_inner().into_iter(), scene.objects.into_inner().into_iter());
     let mut parts = Vec::with_capacity(read.len());
     for (i, (wanted, kind)) in read.iter().enumerate() {
-        let key = i.to_string();
+        let key = || i.to_string();
         let part = match kind {
             Kind::Render => Some(ItemValue::Render(wanted.item(render.clone()))),
             Kind::Tone => Some(ItemValue::Tone(wanted.item(tone.clone()))),
             Kind::Background => background.take().map(|item| ItemValue::Background(wanted.item(item))),
-            Kind::Camera => cameras.swap_remove(&key).map(|item| ItemValue::Camera(wanted.item(item))),
-            Kind::Texture => textures.shift_remove(&key).map(|item| ItemValue::Texture(wanted.item(item))),
-            Kind::Material => materials.swap_remove(&key).map(|item| ItemValue::Material(wanted.item(item))),
+            Kind::Camera => cameras.swap_remove(&key()).map(|item| ItemValue::Camera(wanted.item(item))),
+            Kind::Texture => textures.shift_remove(&key()).map(|item| ItemValue::Texture(wanted.item(item))),
+            Kind::Material => materials.swap_remove(&key()).map(|item| ItemValue::Material(wanted.item(item))),
             Kind::Light => lights.next().map(|item| ItemValue::Light(wanted.item(item))),
             Kind::Lights(count) => {
                 let items = lights.by_ref().take(*count).map(|light| light.with_source(wanted.place, None));
                 Some(ItemValue::Lights(items.collect()))
             }
             Kind::Object => objects.next().map(|item| ItemValue::Object(wanted.object(item))),
-            Kind::Objects => groups.swap_remove(&key).map(|list| ItemValue::Objects(wanted.list(list))),
+            Kind::Objects => groups.swap_remove(&key()).map(|list| ItemValue::Objects(wanted.list(list))),
             Kind::Label => background_light_group.clone().map(ItemValue::Label),
         };
-        parts.extend(part.map(|part| (wanted.path.clone(), part)));
+        parts.extend(part.map(|part| (Cow::Borrowed(&wanted.path), part)));
     }
     // What is left are textures that value forms have written in place.
     for (name, texture) in textures {
-        parts.push((Path::root().key("textures").key(name), ItemValue::FormTexture(texture.with_source(None, None))));
+        let path = Path::root().key("textures").key(name);
+        parts.push((Cow::Owned(path), ItemValue::FormTexture(texture.with_source(None, None))));
     }
     parts
 }

@@ -18,6 +18,7 @@ mod write;
 
 pub(crate) use attach::attach;
 use attach::attach_items;
+use item_reader::ItemValues;
 pub(crate) use item_reader::{ItemSource, read_items, replace_items};
 pub(crate) use item_value::ItemValue;
 pub(crate) use lists::read_list;

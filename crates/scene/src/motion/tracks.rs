@@ -1,12 +1,12 @@
 //! Animated items while the shutter is open, sampled at even times from opening to closing.
 
-use super::{ItemSource, ItemValue, read_items, write};
+use super::{ItemSource, ItemValue, ItemValues, read_items, write};
 use crate::Object;
 use crate::animate::TimeDependence;
 use crate::description::Description;
 use crate::document::{Node, Sources};
 use crate::item::{Item, Template};
-use crate::path::{Path, Step};
+use crate::path::Step;
 use crate::report::Finding;
 use juggler_camera::AnyCamera;
 use juggler_light::AnyLight;
@@ -54,7 +54,7 @@ impl Tracks {
             return Default::default();
         }
         let head = write::head(scene);
-        let mut moments: Vec<Vec<(Path, ItemValue)>> = Vec::with_capacity(MOMENTS);
+        let mut moments: Vec<ItemValues<'_>> = Vec::with_capacity(MOMENTS);
         for moment in 0..MOMENTS {
             let share = moment as f64 / (MOMENTS - 1) as f64;
             let time = frame + open + (close - open) * share;
@@ -68,7 +68,7 @@ impl Tracks {
     }
 
     /// Collects the samples of each item.
-    fn through(scene: &Description, wanted: &[ItemSource], moments: Vec<Vec<(Path, ItemValue)>>) -> Self {
+    fn through(scene: &Description, wanted: &[ItemSource], moments: Vec<ItemValues<'_>>) -> Self {
         let mut tracks = Self::default();
         let mut moments: Vec<_> = moments.into_iter().map(Vec::into_iter).collect();
         for ItemSource { path, .. } in wanted {

@@ -2,15 +2,14 @@
 
 use super::names::Family;
 use super::rule::{Rule, Way};
-use super::{MAX_WARNINGS, Walk, inline, words};
+use super::{MAX_WARNINGS, Plain, Walk, inline, words};
 use crate::document::{Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
 use juggler_math::Rgb;
-use serde_json::Value;
 
 impl Walk<'_> {
-    pub(super) fn choice(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Value> {
+    pub(super) fn choice(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Plain> {
         let way = match &node.value {
             Written::String(text) => way_of_text(text, &rule.ways),
             _ => rule.ways.iter().find(|way| fits(node, &way.rule)),

@@ -1,18 +1,17 @@
 //! Families: `{"sphere": {...}}`, or `"sphere"` where all fields have defaults; and lists of fixed words.
 
 use super::rule::Rule;
-use super::{Walk, foreign, words};
+use super::{Plain, Walk, foreign, words};
 use crate::document::{Members, Node, Value as Written};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest::meant_or_all;
-use serde_json::Value;
 
 /// Most keys that the right form of an object repeats.
 const MAX_SHOWN: usize = 8;
 
 impl Walk<'_> {
-    pub(super) fn family(&mut self, node: &Node, at: &Trail<'_>, family: &'static Rule) -> Option<Value> {
+    pub(super) fn family(&mut self, node: &Node, at: &Trail<'_>, family: &'static Rule) -> Option<Plain> {
         match &node.value {
             Written::Object(members) if !family.kinds.is_empty() => self.kind(node, at, members, family),
             Written::String(text) => self.word(node, at, text, family),
@@ -26,19 +25,19 @@ impl Walk<'_> {
         }
     }
 
-    fn kind(&mut self, node: &Node, at: &Trail<'_>, members: &Members, family: &'static Rule) -> Option<Value> {
+    fn kind(&mut self, node: &Node, at: &Trail<'_>, members: &Members, family: &'static Rule) -> Option<Plain> {
         let mut entries = members.iter();
         let (Some((key, member)), None) = (entries.next(), entries.next()) else {
             return self.not_one_kind(node, at, members, family);
         };
-        let Some((_, content)) = family.kinds.iter().find(|(kind, _)| kind == key) else {
+        let Some((kind, content)) = family.kinds.iter().find(|(kind, _)| kind == key) else {
             let finding = Finding::error(format!("unknown kind of {} `{key}`", noun(family))).on(member.key_place);
             let help = foreign::kind(key, family).or_else(|| meant_or_all(key, kinds(family)));
             self.findings.push(finding.maybe_help(help).at(&at.key(key)));
             return None;
         };
         let value = self.value(&member.node, &at.key(key), content.get())?;
-        Some(Value::Object([(key.clone(), value)].into_iter().collect()))
+        Some(Plain::member(*kind, value))
     }
 
     /// Complains of no key or several where the name of one kind should stand.
@@ -71,13 +70,13 @@ impl Walk<'_> {
     }
 
     /// A kind by its name alone, or one of a list of words.
-    fn word(&mut self, node: &Node, at: &Trail<'_>, text: &str, family: &'static Rule) -> Option<Value> {
+    fn word(&mut self, node: &Node, at: &Trail<'_>, text: &str, family: &'static Rule) -> Option<Plain> {
         if family.words.contains(&text) {
-            return Some(text.into());
+            return Some(Plain::String(text.to_owned()));
         }
         match family.kinds.iter().find(|(kind, _)| *kind == text) {
             Some((kind, content)) if content.types.object && content.required.is_empty() => {
-                Some(Value::Object([((*kind).to_owned(), Value::Object(Default::default()))].into_iter().collect()))
+                Some(Plain::member(*kind, Plain::Object(Vec::new())))
             }
             Some((kind, content)) => {
                 let needed = words::list(content.required.iter().copied(), "and");

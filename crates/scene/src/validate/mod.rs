@@ -9,7 +9,6 @@ use crate::report::Finding;
 use crate::schema::Schema;
 use crate::suggest::did_you_mean;
 use rule::{Rule, RuleId};
-use serde_json::Value;
 
 mod choice;
 mod family;
@@ -17,6 +16,7 @@ mod foreign;
 mod given;
 mod inline;
 mod names;
+mod plain;
 mod rule;
 mod scalar;
 mod structure;
@@ -26,6 +26,7 @@ pub use foreign::page as names_page;
 pub(crate) use given::DeclaredNames;
 pub use names::Family;
 pub(crate) use names::NameScope;
+pub(crate) use plain::Plain;
 pub(crate) use words::{family as definition_family, list, noun as family_noun, plural};
 
 /// Most warnings that are collected.
@@ -37,9 +38,10 @@ const MAX_FINDINGS: usize = 200;
 #[derive(Debug, Default)]
 pub struct Validated {
     /// The scene as plain JSON, without what is wrong; nothing when hardly anything is right.
-    pub json: Option<Value>,
-    /// Textures that were written in place, by the names that they got. Those of a whole scene are in `json` too.
-    pub textures: Vec<(String, Value)>,
+    pub json: Option<Plain>,
+    /// Inline textures by name. The inline textures of a whole scene are part of `json`, and `Null`
+    /// here.
+    pub textures: Vec<(String, Plain)>,
     /// All that is wrong.
     pub findings: Vec<Finding>,
     /// What is allowed and probably not meant.
@@ -59,7 +61,7 @@ pub fn validate(tree: &Node) -> Validated {
     let mut walk = Walk::new(NameScope::Tree(tree));
     let mut json = Rule::root().and_then(|scene| walk.value(tree, &Trail::Root, scene));
     let textures = match &mut json {
-        Some(Value::Object(scene)) => walk.add_textures(scene),
+        Some(Plain::Object(scene)) => walk.add_textures(scene),
         _ => Vec::new(),
     };
     Validated { json, textures, findings: walk.findings, warnings: walk.warnings }
@@ -114,7 +116,7 @@ struct Walk<'t> {
     known: NameScope<'t>,
     findings: Vec<Finding>,
     /// Textures that are written in place, by the names that they get.
-    textures: Vec<(String, Value)>,
+    textures: Vec<(String, Plain)>,
     warnings: Vec<Finding>,
 }
 
@@ -126,12 +128,12 @@ impl<'t> Walk<'t> {
 
 impl Walk<'_> {
     /// The plain JSON of a value, or nothing when it is wrong and must be left out.
-    fn value(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Value> {
+    fn value(&mut self, node: &Node, at: &Trail<'_>, rule: &'static Rule) -> Option<Plain> {
         if self.findings.len() >= MAX_FINDINGS {
             return None;
         }
         if rule.anything {
-            return Some(Value::Null);
+            return Some(Plain::Null);
         }
         if matches!(node.value, Written::Wrong) {
             return None;
@@ -143,10 +145,10 @@ impl Walk<'_> {
             return self.family(node, at, rule);
         }
         match &node.value {
-            Written::Null if rule.types.null => Some(Value::Null),
+            Written::Null if rule.types.null => Some(Plain::Null),
             Written::Number(number) if rule.allows_number() => self.number(node, at, number, rule),
             Written::String(text) if rule.types.string => self.string(node, at, text, rule),
-            Written::Bool(value) if rule.types.boolean => Some((*value).into()),
+            Written::Bool(value) if rule.types.boolean => Some(Plain::Bool(*value)),
             Written::Array(elements) if rule.types.array => self.array(node, at, elements, rule),
             Written::Object(members) if rule.types.object => self.object(node, at, members, rule),
             _ => self.mismatch(node, at, &words::allowed(self.schema, rule)),
@@ -154,7 +156,7 @@ impl Walk<'_> {
     }
 
     /// The wrong type of value stands here.
-    fn mismatch(&mut self, node: &Node, at: &Trail<'_>, expected: &str) -> Option<Value> {
+    fn mismatch(&mut self, node: &Node, at: &Trail<'_>, expected: &str) -> Option<Plain> {
         let finding = match &node.value {
             Written::Null if node.place.is_none() => {
                 Finding::error(format!("expected {expected}, found one that is not finite"))

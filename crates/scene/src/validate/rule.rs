@@ -3,6 +3,7 @@
 use super::words;
 use crate::schema::{Schema, exactly_one, variants};
 use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -135,8 +136,14 @@ impl Rule {
 
     /// The rule of a key.
     pub fn field(&self, key: &str) -> Option<RuleId> {
-        let fields = self.fields.iter().flatten();
-        fields.into_iter().find(|(name, _)| *name == key).map(|(_, rule)| *rule).or(self.others)
+        self.member(key).map(|(_, rule)| rule)
+    }
+
+    /// The rule of a key, and the key itself, borrowed from the schema if it is fixed there.
+    pub fn member(&self, key: &str) -> Option<(Cow<'static, str>, RuleId)> {
+        let field = self.fields.iter().flatten().find(|(name, _)| *name == key);
+        let other = || self.others.map(|rule| (key.to_owned().into(), rule));
+        field.map(|(name, rule)| ((*name).into(), *rule)).or_else(other)
     }
 }
 

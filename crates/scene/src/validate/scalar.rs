@@ -1,8 +1,8 @@
 //! Numbers and strings.
 
-use super::Walk;
 use super::names::Family;
 use super::rule::{MOST_U64, Rule};
+use super::{Plain, Walk};
 use crate::document::Node;
 use crate::path::Trail;
 use crate::report::Finding;
@@ -16,7 +16,7 @@ impl Walk<'_> {
         at: &Trail<'_>,
         number: &Number,
         rule: &'static Rule,
-    ) -> Option<Value> {
+    ) -> Option<Plain> {
         let written = number.as_f64().unwrap_or(f64::NAN);
         let whole = !rule.types.number;
         if whole && written != written.trunc() {
@@ -33,7 +33,7 @@ impl Walk<'_> {
             let message = format!("this is version {number} of the format, this program reads version 1");
             self.report::<()>(node, at, Finding::error(message));
             // The rest may be right all the same.
-            return Some(1.into());
+            return Some(Plain::Number(1.into()));
         }
         if let Some(bound) = rule.numbers.broken_by(value) {
             if value == 0.0 && written != 0.0 {
@@ -43,12 +43,13 @@ impl Walk<'_> {
             return self.wrong_number(node, at, &bound, number);
         }
         if whole && number.is_f64() {
-            return Some(if value < 0.0 { (value as i64).into() } else { (value as u64).into() });
+            let number = if value < 0.0 { (value as i64).into() } else { (value as u64).into() };
+            return Some(Plain::Number(number));
         }
-        Some(Value::Number(number.clone()))
+        Some(Plain::Number(number.clone()))
     }
 
-    fn wrong_number(&mut self, node: &Node, at: &Trail<'_>, wanted: &str, number: &Number) -> Option<Value> {
+    fn wrong_number(&mut self, node: &Node, at: &Trail<'_>, wanted: &str, number: &Number) -> Option<Plain> {
         let subject = match (at, at.last_key()) {
             (Trail::Key(..), Some(key)) => format!("`{key}`"),
             (_, Some(key)) => format!("each number of `{key}`"),
@@ -59,7 +60,7 @@ impl Walk<'_> {
         self.report(node, at, Finding::error(format!("{subject} must be {wanted}, is {shown}")))
     }
 
-    pub(super) fn string(&mut self, node: &Node, at: &Trail<'_>, text: &str, rule: &'static Rule) -> Option<Value> {
+    pub(super) fn string(&mut self, node: &Node, at: &Trail<'_>, text: &str, rule: &'static Rule) -> Option<Plain> {
         let family = match rule.name {
             Some("GroupName") => Some(Family::Group),
             Some("CameraName") => Some(Family::Camera),
@@ -72,6 +73,6 @@ impl Walk<'_> {
             let help = "a colour is written [r, g, b], or \"#rrggbb\" with six digits 0-9 or a-f, or \"#rgb\"";
             return self.report(node, at, Finding::error(format!("`{text}` is not a colour")).help(help));
         }
-        Some(text.into())
+        Some(Plain::String(text.to_owned()))
     }
 }

@@ -1,12 +1,11 @@
 //! Arrays and objects.
 
 use super::rule::Rule;
-use super::{MAX_FINDINGS, Walk, foreign, words};
+use super::{MAX_FINDINGS, Plain, Walk, foreign, words};
 use crate::document::{Member, Members, Node};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::suggest::meant_or_all;
-use serde_json::{Map, Value};
 
 /// Objects that stay when one of their members is wrong: the others can still be checked. In all others (a
 /// camera, a shape) members hang together.
@@ -19,7 +18,7 @@ impl Walk<'_> {
         at: &Trail<'_>,
         elements: &[Node],
         rule: &'static Rule,
-    ) -> Option<Value> {
+    ) -> Option<Plain> {
         let found = elements.len();
         let wanted = match rule.length {
             (Some(least), Some(most)) if least == most && found != least => Some(least.to_string()),
@@ -40,7 +39,7 @@ impl Walk<'_> {
             }
             values.push(self.value(element, &at.index(i), items));
         }
-        values.into_iter().collect::<Option<Vec<Value>>>().map(Value::Array)
+        values.into_iter().collect::<Option<Vec<Plain>>>().map(Plain::Array)
     }
 
     pub(super) fn object(
@@ -49,39 +48,37 @@ impl Walk<'_> {
         at: &Trail<'_>,
         members: &Members,
         rule: &'static Rule,
-    ) -> Option<Value> {
+    ) -> Option<Plain> {
         let root = at.is_root();
         let loose = root || rule.name.is_some_and(|name| LOOSE.contains(&name)) || rule.fields.is_none();
-        let mut json = Map::new();
+        let mut json = Vec::with_capacity(members.len());
         let mut sound = true;
         for (key, member) in members.iter() {
             if self.findings.len() >= MAX_FINDINGS {
                 return None;
             }
-            let Some(field) = rule.field(key) else {
+            let Some((name, field)) = rule.member(key) else {
                 let finding = unknown_key(key, member, rule, at).on(member.key_place);
                 self.findings.push(finding.at(&at.key(key)));
                 sound = false;
                 continue;
             };
             match self.value(&member.node, &at.key(key), field.get()) {
-                Some(value) => {
-                    json.insert(key.clone(), value);
-                }
+                Some(value) => json.push((name, value)),
                 None => sound = false,
             }
         }
         let complete = self.required(node, at, members, rule);
         self.exactly_one(node, at, members, rule);
-        if root {
-            json.entry("version").or_insert(1.into());
+        if root && !json.iter().any(|(key, _)| key == "version") {
+            json.push(("version".into(), Plain::Number(1.into())));
         }
-        ((complete || root) && (sound || loose)).then_some(Value::Object(json))
+        ((complete || root) && (sound || loose)).then_some(Plain::Object(json))
     }
 
     /// Whether all keys stand that must stand.
     fn required(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) -> bool {
-        let missing: Vec<&str> = rule.required.iter().copied().filter(|key| !members.contains_key(*key)).collect();
+        let missing: Vec<&str> = rule.required.iter().copied().filter(|key| !members.contains_key(key)).collect();
         if missing.is_empty() {
             return true;
         }
@@ -97,11 +94,12 @@ impl Walk<'_> {
     /// Complains when not exactly one of some keys stands.
     fn exactly_one(&mut self, node: &Node, at: &Trail<'_>, members: &Members, rule: &'static Rule) {
         let keys = rule.exactly_one.iter().copied();
-        let found: Vec<&str> = keys.clone().filter(|key| members.contains_key(*key)).collect();
-        if rule.exactly_one.is_empty() || found.len() == 1 {
+        let found = keys.clone().filter(|key| members.contains_key(key));
+        let count = found.clone().count();
+        if rule.exactly_one.is_empty() || count == 1 {
             return;
         }
-        let found = if found.is_empty() { "none".into() } else { words::list(found, "and") };
+        let found = if count == 0 { "none".into() } else { words::list(found, "and") };
         let message = format!("exactly one of {} must stand here, found {found}", words::list(keys, "and"));
         // A misspelt one is its own message.
         let misspelt = members.keys().any(|key| rule.field(key).is_none());

@@ -193,12 +193,21 @@ impl Tally {
     /// The solid angle into which they shine, weighted by the cosine beyond the normals. How far the axes differ is
     /// estimated from the length of their mean: (1 + cos θ) / 2 where they fill a cone of half angle θ evenly.
     fn orientation(&self) -> f64 {
+        // Normals in all directions: the formula's value, to the last bit.
+        if self.cos_spread <= -1.0 {
+            return 4.0 * PI;
+        }
         let mean = f64::from(self.axes.length()) / self.count as f64;
         let angle = |cos: f64| fun::acos_f64(cos.clamp(-1.0, 1.0));
         let spread = (angle(2.0 * mean - 1.0) + angle(f64::from(self.cos_spread))).min(PI);
         let reach = (spread + angle(f64::from(self.cos_emission))).min(PI);
-        let (sin, cos) = fun::sin_cos_f64(spread);
-        let beyond = 2.0 * reach * sin - fun::cos_f64(spread - 2.0 * reach) - 2.0 * spread * sin + cos;
-        2.0 * PI * (1.0 - cos) + 0.5 * PI * beyond
+        solid_angle(spread, reach)
     }
+}
+
+/// Solid angle within `spread` of an axis, and beyond it up to `reach` weighted by the cosine of the angle past `spread`.
+pub(super) fn solid_angle(spread: f64, reach: f64) -> f64 {
+    let (sin, cos) = fun::sin_cos_f64(spread);
+    let beyond = 2.0 * reach * sin - fun::cos_f64(spread - 2.0 * reach) - 2.0 * spread * sin + cos;
+    2.0 * PI * (1.0 - cos) + 0.5 * PI * beyond
 }

@@ -52,6 +52,13 @@ fn shines(random: &mut Random, light: &LightBounds, point: Vec3, normal: Vec3) -
 }
 
 #[test]
+fn normals_in_all_directions_fill_the_sphere_to_the_last_bit() {
+    use std::f64::consts::PI;
+    assert_eq!(summary::solid_angle(PI, PI).to_bits(), (4.0 * PI).to_bits());
+    assert_eq!(juggler_math::fun::acos_f64(-1.0).to_bits(), PI.to_bits());
+}
+
+#[test]
 fn no_light_that_shines_has_no_chance() {
     let mut random = Random::new(1001);
     let mut shone = 0;
