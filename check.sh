@@ -6,8 +6,8 @@
 #   ./check.sh changed [BASE]   lint, and the tests of every package that the changes since BASE can
 #                               break; BASE is the merge base with main by default, with nothing
 #                               changed since that the commit before
-#   ./check.sh deep [PART...]   the long checks: dist matrix noise rays furnaces memory kills fuzz
-#                               bombs web cluster; parts that passed on the very same source are not run again
+#   ./check.sh deep [PART...]   the long checks: dist matrix noise rays furnaces memory kills kinds
+#                               fuzz bombs web cluster; parts that passed on the very same source are not run again
 # CONTRIBUTING.md says what each step does and how long it takes.
 set -euo pipefail
 cd "$(dirname "$0")"

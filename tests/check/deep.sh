@@ -1,7 +1,7 @@
 # `check.sh deep`: what takes too long for every change. Each part takes an hour at most.
 # shellcheck shell=bash
 
-deep_parts=(dist matrix noise rays furnaces memory kills fuzz bombs web cluster)
+deep_parts=(dist matrix noise rays furnaces memory kills kinds fuzz bombs web cluster)
 
 check_deep() {
   local part
@@ -65,6 +65,9 @@ deep_memory() { cargo test --release --locked -p juggler-cli --test program -- m
 
 # Renders killed at random moments and continued.
 deep_kills() { cargo run --release --locked -p juggler-golden --bin kill-test -- 100 1; }
+
+# A new kind of every family, added to a copy of the source, which is built and renders with it.
+deep_kinds() { JUGGLER_KINDS=all cargo test --locked -p juggler-golden --test golden -- kinds::; }
 
 # 28,000 mutations of files, and 20,000 scenes whose numbers are extreme, in processes whose address space is limited.
 deep_fuzz() { JUGGLER_MUTATIONS=2000 JUGGLER_FIELDS=20000 cargo test --release --locked -p juggler-fuzz --test hostile; }

@@ -53,6 +53,10 @@ impl Material for BumpMap {
         let material = resolver.material("material", &self.material)?;
         Ok(Compiled::BumpMap(CompiledBumpMap { height, distance: self.distance, material }))
     }
+
+    fn parts(&self) -> Vec<&MaterialRef> {
+        vec![&self.material]
+    }
 }
 
 impl CompiledBumpMap {

@@ -65,6 +65,10 @@ impl Material for Checkerboard {
         let odd = resolver.material("odd", &self.odd)?;
         Ok(Compiled::Checkerboard(CompiledCheckerboard { size: self.size, plane: self.plane, even, odd }))
     }
+
+    fn parts(&self) -> Vec<&MaterialRef> {
+        vec![&self.even, &self.odd]
+    }
 }
 
 impl CompiledCheckerboard {

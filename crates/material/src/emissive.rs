@@ -64,6 +64,14 @@ impl Material for Emissive {
         };
         Ok(Compiled::Emissive(CompiledEmissive::new(radiance, self.scale, self.sides, material)))
     }
+
+    fn parts(&self) -> Vec<&MaterialRef> {
+        self.material.iter().collect()
+    }
+
+    fn is_emitter(&self) -> bool {
+        true
+    }
 }
 
 impl CompiledEmissive {

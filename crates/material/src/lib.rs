@@ -108,6 +108,32 @@ pub trait Resolver {
 pub trait Material: Send + Sync {
     /// Looks up every name, once.
     fn compile(&self, resolver: &mut dyn Resolver) -> Result<Compiled, MaterialError>;
+
+    /// Materials that this one is made of.
+    fn parts(&self) -> Vec<&MaterialRef> {
+        Vec::new()
+    }
+
+    /// Whether surfaces of the material are emitters, its parts not counted.
+    fn is_emitter(&self) -> bool {
+        false
+    }
+
+    /// Whether the material shows light of its own, its parts not counted.
+    fn has_emission(&self) -> bool {
+        self.is_emitter()
+    }
+
+    /// Whether the material is of the classic model, which the integrator `classic` shades as a
+    /// whole.
+    fn is_classic(&self) -> bool {
+        false
+    }
+
+    /// Number of rays that the classic integrator traces from a point for glossy reflections.
+    fn glossy_rays(&self) -> u64 {
+        0
+    }
 }
 
 juggler_math::closed_set! {

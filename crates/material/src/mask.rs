@@ -48,6 +48,10 @@ impl Material for Mask {
         let material = resolver.material("material", &self.material)?;
         Ok(Compiled::Mask(CompiledMask::new(opacity, self.cutoff, material)))
     }
+
+    fn parts(&self) -> Vec<&MaterialRef> {
+        vec![&self.material]
+    }
 }
 
 impl CompiledMask {

@@ -43,6 +43,10 @@ impl Material for Mix {
         let (a, b) = (resolver.material("a", &self.a)?, resolver.material("b", &self.b)?);
         Ok(Compiled::Mix(CompiledMix { amount, a, b }))
     }
+
+    fn parts(&self) -> Vec<&MaterialRef> {
+        vec![&self.a, &self.b]
+    }
 }
 
 impl CompiledMix {

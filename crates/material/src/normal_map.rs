@@ -57,6 +57,10 @@ impl Material for NormalMap {
         let material = resolver.material("material", &self.material)?;
         Ok(Compiled::NormalMap(CompiledNormalMap { texture, strength, material }))
     }
+
+    fn parts(&self) -> Vec<&MaterialRef> {
+        vec![&self.material]
+    }
 }
 
 impl CompiledNormalMap {

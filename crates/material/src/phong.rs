@@ -174,6 +174,18 @@ impl Material for Phong {
         let textured = slots.any_texture().then(|| Box::new(slots));
         Ok(Compiled::Phong(CompiledPhong { fixed, textured }))
     }
+
+    fn has_emission(&self) -> bool {
+        !matches!(&self.emission, Input::Value(color) if color.is_black())
+    }
+
+    fn is_classic(&self) -> bool {
+        true
+    }
+
+    fn glossy_rays(&self) -> u64 {
+        u64::from(self.glossy.rays) + u64::from(self.blurry.rays)
+    }
 }
 
 impl Phong {

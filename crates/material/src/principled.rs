@@ -160,7 +160,7 @@ impl Material for Principled {
         let emissive = textures.resolve("emissive", &self.emissive)?;
         let opacity = textures.resolve("opacity", &self.opacity)?;
         let mut compiled = Compiled::scattering(compiled);
-        if self.glows() {
+        if self.is_emitter() {
             let inner = resolver.within(compiled);
             compiled = Compiled::Emissive(CompiledEmissive::new(emissive, self.emissive_strength, Sides::Both, inner));
         }
@@ -170,14 +170,13 @@ impl Material for Principled {
         }
         Ok(compiled)
     }
+
+    fn is_emitter(&self) -> bool {
+        self.emissive_strength > 0.0 && !matches!(&self.emissive, Input::Value(color) if color.is_black())
+    }
 }
 
 impl Principled {
-    /// Whether it gives off light anywhere.
-    pub fn glows(&self) -> bool {
-        self.emissive_strength > 0.0 && !matches!(&self.emissive, Input::Value(color) if color.is_black())
-    }
-
     fn check(&self) -> Result<(), MaterialError> {
         for (field, input) in self.colors() {
             check_share(field, input)?;

@@ -148,27 +148,14 @@ impl Holdings {
     /// Named materials within others are looked at under their own names.
     fn material(&mut self, material: &AnyMaterial, path: &Trail<'_>) {
         let part = |is_light| Some(Part { path: path.into(), kind: material.name(), is_light });
-        match material {
-            AnyMaterial::Phong(_) => self.has_phong = true,
-            AnyMaterial::Emissive(emissive) => {
-                self.emitter = self.emitter.take().or_else(|| part(true));
-                emissive.material.iter().for_each(|inner| self.inline(inner, path));
-            }
-            AnyMaterial::Checkerboard(board) => {
-                self.inline(&board.even, path);
-                self.inline(&board.odd, path);
-            }
-            AnyMaterial::Mix(mix) => {
-                self.inline(&mix.a, path);
-                self.inline(&mix.b, path);
-            }
-            AnyMaterial::Mask(mask) => self.inline(&mask.material, path),
-            AnyMaterial::NormalMap(map) => self.inline(&map.material, path),
-            AnyMaterial::BumpMap(map) => self.inline(&map.material, path),
-            AnyMaterial::Principled(principled) if principled.glows() => {
-                self.emitter = self.emitter.take().or_else(|| part(true));
-            }
-            _ => self.physical = self.physical.take().or_else(|| part(false)),
+        let parts = material.parts();
+        if material.is_classic() {
+            self.has_phong = true;
+        } else if material.is_emitter() {
+            self.emitter = self.emitter.take().or_else(|| part(true));
+        } else if parts.is_empty() {
+            self.physical = self.physical.take().or_else(|| part(false));
         }
+        parts.into_iter().for_each(|part| self.inline(part, path));
     }
 }

@@ -15,6 +15,7 @@ mod chess;
 mod hashes;
 mod hits;
 mod instances;
+mod kinds;
 mod matrix;
 mod model;
 mod noise;

@@ -97,16 +97,7 @@ impl<'s> Search<'s> {
     }
 
     fn is_emitting(&mut self, material: &'s AnyMaterial) -> bool {
-        match material {
-            AnyMaterial::Emissive(_) => true,
-            AnyMaterial::Principled(principled) => principled.glows(),
-            AnyMaterial::Checkerboard(board) => self.emits(&board.even) || self.emits(&board.odd),
-            AnyMaterial::Mask(mask) => self.emits(&mask.material),
-            AnyMaterial::Mix(mix) => self.emits(&mix.a) || self.emits(&mix.b),
-            AnyMaterial::NormalMap(map) => self.emits(&map.material),
-            AnyMaterial::BumpMap(map) => self.emits(&map.material),
-            _ => false,
-        }
+        material.is_emitter() || material.parts().into_iter().any(|part| self.emits(part))
     }
 }
 

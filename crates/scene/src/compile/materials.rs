@@ -9,7 +9,7 @@ use crate::report::Finding;
 use juggler_material::{
     AnyMaterial, MaterialCompiler, MaterialError, MaterialId, MaterialRef, MaterialTable, Resolver,
 };
-use juggler_texture::{Input, TextureTable};
+use juggler_texture::TextureTable;
 use std::sync::Arc;
 
 /// Compiles materials as objects ask for them.
@@ -120,21 +120,5 @@ fn glows(material: &AnyMaterial) -> bool {
         MaterialRef::Inline(material) => glows(material),
         MaterialRef::Name(_) => false,
     };
-    match material {
-        AnyMaterial::Phong(phong) => !matches!(&phong.emission, Input::Value(color) if color.is_black()),
-        AnyMaterial::Emissive(_) => true,
-        AnyMaterial::Checkerboard(board) => inline(&board.even) || inline(&board.odd),
-        AnyMaterial::Mask(mask) => inline(&mask.material),
-        AnyMaterial::Mix(mix) => inline(&mix.a) || inline(&mix.b),
-        AnyMaterial::NormalMap(map) => inline(&map.material),
-        AnyMaterial::BumpMap(map) => inline(&map.material),
-        AnyMaterial::Principled(principled) => principled.glows(),
-        AnyMaterial::Diffuse(_)
-        | AnyMaterial::Conductor(_)
-        | AnyMaterial::Dielectric(_)
-        | AnyMaterial::Plastic(_)
-        | AnyMaterial::Velvet(_)
-        | AnyMaterial::Translucent(_)
-        | AnyMaterial::Boundary(_) => false,
-    }
+    material.has_emission() || material.parts().into_iter().any(inline)
 }

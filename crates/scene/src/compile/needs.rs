@@ -76,8 +76,6 @@ impl Needs {
     }
 
     fn material(&mut self, material: &AnyMaterial) {
-        if let AnyMaterial::Phong(phong) = material {
-            self.rays = self.rays.max(u64::from(phong.glossy.rays) + u64::from(phong.blurry.rays));
-        }
+        self.rays = self.rays.max(material.glossy_rays());
     }
 }

@@ -34,7 +34,7 @@ pub(super) trait MeshFormat: Sync {
 }
 
 /// All formats. A binary STL may begin with the words of another format, so it is asked first.
-const FORMATS: [&dyn MeshFormat; 3] = [
+const FORMATS: &[&dyn MeshFormat] = &[
     &stl::Stl, //
     &obj::Obj,
     &ply::Ply,
@@ -43,17 +43,17 @@ const FORMATS: [&dyn MeshFormat; 3] = [
 /// Format of a file by the extension of its name, in any case.
 pub(super) fn of_name(path: &Path) -> Option<&'static dyn MeshFormat> {
     let extension = path.extension()?;
-    FORMATS.into_iter().find(|format| extension.eq_ignore_ascii_case(format.extension()))
+    FORMATS.iter().copied().find(|format| extension.eq_ignore_ascii_case(format.extension()))
 }
 
 /// Format of a file by its content, where that is unambiguous.
 pub(super) fn of_content(bytes: &[u8]) -> Option<&'static dyn MeshFormat> {
-    FORMATS.into_iter().find(|format| format.is_content(bytes))
+    FORMATS.iter().copied().find(|format| format.is_content(bytes))
 }
 
 /// Format of a file of `size` bytes by its first bytes, where these are unambiguous.
 pub(super) fn of_head(head: &[u8], size: u64) -> Option<&'static dyn MeshFormat> {
-    FORMATS.into_iter().find(|format| format.is_head(head, size))
+    FORMATS.iter().copied().find(|format| format.is_head(head, size))
 }
 
 #[cfg(test)]

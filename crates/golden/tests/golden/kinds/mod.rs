@@ -1,0 +1,145 @@
+//! A new kind of any family is one file and two lines: kinds are added to a copy of the source, which
+//! must compile, and render as the kinds that they are copies of.
+
+mod families;
+
+use families::{Addition, FAMILIES};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Lines of existing files that a new kind may add.
+const LINES: usize = 2;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The copy of the source, beside the other things that tests leave in the target folder.
+fn scratch() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("kinds")
+}
+
+/// Writes a file unless it says the same already, so that the compiler finds unchanged files unchanged.
+fn write(path: &Path, content: &[u8]) {
+    if fs::read(path).is_ok_and(|old| old == content) {
+        return;
+    }
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, content).unwrap();
+}
+
+/// Paths of all files below a folder of the source, relative to the root, but for what is built.
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(root().join(folder)).unwrap() {
+        let entry = entry.unwrap();
+        let path = folder.join(entry.file_name());
+        let is_built = ["target", "node_modules"].iter().any(|name| entry.file_name() == *name);
+        match entry.file_type().unwrap() {
+            kind if kind.is_dir() && !is_built => files(&path, found),
+            kind if kind.is_file() => found.push(path),
+            _ => {}
+        }
+    }
+}
+
+/// Copies the source to the scratch folder and adds kinds. Files that an addition of another run left
+/// are removed.
+fn copy_with(additions: &[&Addition]) {
+    let mut paths: Vec<PathBuf> = ["Cargo.toml", "Cargo.lock"].map(PathBuf::from).to_vec();
+    for folder in ["crates", "scenes", "schema"] {
+        files(Path::new(folder), &mut paths);
+    }
+    for addition in FAMILIES {
+        let _ = fs::remove_file(scratch().join(addition.new_file()));
+    }
+    let pages: Vec<(PathBuf, String)> = additions.iter().flat_map(|addition| addition.pages()).collect();
+    for path in paths {
+        let text = fs::read(root().join(&path)).unwrap();
+        let added: Vec<&String> = pages.iter().filter(|(page, _)| *page == path).map(|(_, line)| line).collect();
+        if added.is_empty() {
+            write(&scratch().join(&path), &text);
+            continue;
+        }
+        let mut text = String::from_utf8(text).unwrap();
+        for line in added {
+            insert(&mut text, line, &path);
+        }
+        write(&scratch().join(&path), text.as_bytes());
+    }
+    for addition in additions {
+        write(&scratch().join(addition.new_file()), addition.source(&root()).as_bytes());
+    }
+}
+
+/// Inserts one line. `rule` is the line and, behind an arrow, the text of the line that it follows.
+fn insert(text: &mut String, rule: &str, page: &Path) {
+    let (line, after) = rule.split_once(" <- ").unwrap();
+    let at = text.find(after).unwrap_or_else(|| panic!("{} has no `{after}`", page.display()));
+    let end = at + text[at..].find('\n').unwrap() + 1;
+    text.insert_str(end, &format!("{line}\n"));
+}
+
+/// Runs Cargo in the scratch folder.
+fn cargo(arguments: &[&str]) {
+    let mut command = Command::new(env!("CARGO"));
+    command.current_dir(scratch()).args(arguments).args(["--offline", "--locked", "--quiet"]);
+    command.env("CARGO_TARGET_DIR", scratch().join("target")).env_remove("RUSTFLAGS");
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "cargo {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_new_kind_is_one_file_and_two_lines() {
+    for addition in FAMILIES {
+        assert_eq!(addition.pages().len(), LINES, "{}", addition.family);
+    }
+    if std::env::var("JUGGLER_KINDS").as_deref() == Ok("all") {
+        copy_with(&FAMILIES.iter().collect::<Vec<_>>());
+        cargo(&["build", "-p", "juggler-cli", "--no-default-features"]);
+        new_kinds_render_as_the_old_ones();
+    } else {
+        let two = ["lobe", "shape"].map(|family| FAMILIES.iter().find(|a| a.family == family).unwrap());
+        copy_with(&two);
+        cargo(&["check", "-p", "juggler-bsdf", "-p", "juggler-shape"]);
+    }
+}
+
+/// Renders a scene of old kinds and one of new ones, which must be the same picture to the bit.
+fn new_kinds_render_as_the_old_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = "0 0 0  0 0 1  1 0 0\n0 0 1  1 0 1  1 0 0\n";
+    let wavefront = "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\nv 1 0 1\nf 2 4 3\n";
+    write(&folder.path().join("mesh.tri"), mesh.as_bytes());
+    write(&folder.path().join("mesh.obj"), wavefront.as_bytes());
+    let old = families::SCENE;
+    let mut new = old.to_owned();
+    for addition in FAMILIES {
+        if let Some((before, after)) = addition.in_json {
+            assert!(new.contains(before), "{before}");
+            new = new.replace(before, after);
+        }
+    }
+    assert!(!FAMILIES.iter().filter_map(|a| a.in_json).any(|(before, _)| new.contains(before)), "{new}");
+    let picture = |name: &str, scene: &str| {
+        write(&folder.path().join(format!("{name}.json")), scene.as_bytes());
+        let mut command = Command::new(scratch().join("target/debug/juggler"));
+        command.current_dir(folder.path()).args([
+            "render",
+            &format!("{name}.json"),
+            "-o",
+            &format!("{name}.pfm"),
+            "-q",
+        ]);
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        fs::read(folder.path().join(format!("{name}.pfm"))).unwrap()
+    };
+    for integrator in ["\"path\"", "\"albedo\""] {
+        let integrated = |scene: &str| scene.replace("INTEGRATOR", integrator);
+        let flat = |scene: &str| integrated(scene).replace("\"albedo\"", "\"flat\"");
+        let (old, new) = (picture("old", &integrated(old)), picture("new", &flat(&new)));
+        assert!(old == new, "the new kinds render another picture");
+        assert!(old.iter().skip(64).any(|byte| *byte != 0), "a black picture shows nothing");
+    }
+}
