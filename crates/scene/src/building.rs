@@ -1,6 +1,7 @@
 //! Scenes that are built by programs.
 
 use crate::Scene;
+use crate::asset::Asset;
 use crate::description::{Backdrop, Object};
 use crate::item::Item;
 use juggler_camera::AnyCamera;
@@ -12,6 +13,7 @@ use juggler_light::AnyLight;
 use juggler_light::background::AnyBackground;
 use juggler_material::AnyMaterial;
 use juggler_texture::AnyTexture;
+use std::sync::Arc;
 
 /// Building a scene.
 impl Scene {
@@ -41,6 +43,22 @@ impl Scene {
     #[must_use]
     pub fn texture(mut self, name: impl Into<String>, texture: impl Into<AnyTexture>) -> Self {
         self.description.textures.insert(name.into(), texture.into().into());
+        self
+    }
+
+    /// Adds an image in memory under a name, in linear light. Textures and environments show it by
+    /// that name in place of a file's, such as [`Image::new`](juggler_texture::Image::new)`("wood")`.
+    #[must_use]
+    pub fn image(self, name: impl Into<String>, image: impl Into<Arc<juggler_math::Image>>) -> Self {
+        self.asset(name, Asset::from_image(image))
+    }
+
+    /// Adds an asset under a name: whatever names a file of that name, such as a mesh, a texture, an
+    /// environment or a light profile, takes the asset instead. A program that reads the scene's JSON
+    /// again must add the same assets.
+    #[must_use]
+    pub fn asset(mut self, name: impl Into<String>, asset: Asset) -> Self {
+        self.library.insert_asset(name.into(), asset);
         self
     }
 

@@ -10,6 +10,7 @@
 
 pub mod animate;
 mod around;
+mod asset;
 mod bookmark;
 mod building;
 pub mod compile;
@@ -34,6 +35,7 @@ mod shared;
 mod store;
 pub mod validate;
 
+pub use asset::Asset;
 pub use bookmark::{camera_json, with_camera};
 pub use compile::{Compiled, Illuminance, Names};
 pub use description::{Chain, ControlSphere, Description, Limb, Object, TransformStep};

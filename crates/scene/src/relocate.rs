@@ -38,7 +38,8 @@ fn walk(value: &mut Value, at: &mut ScenePath, files: &Files<'_>, folder: &Path)
 fn rename(name: &mut String, at: &ScenePath, files: &Files<'_>, folder: &Path) {
     let is_variable = matches!(at.steps(), [Step::Key(first), ..] if first == "variables");
     // Variables may be called `file` too; they are numbers and vectors.
-    if is_variable || Path::new(name.as_str()).is_absolute() {
+    let is_asset = files.library.store().assets.path_of(name).is_some();
+    if is_variable || is_asset || Path::new(name.as_str()).is_absolute() {
         return;
     }
     let (Some(from), Some(to)) = (true_folder(&files.locate(at, "")), true_folder(folder)) else { return };

@@ -11,7 +11,7 @@ use crate::motion::{self, Tracks, read_list};
 use crate::path::{Path as ScenePath, Trail};
 use crate::relocate::relocate;
 use crate::report::{Finding, Problems};
-use crate::store::{Bundle, Store};
+use crate::store::Bundle;
 use crate::validate::DeclaredNames;
 use crate::{animate, around};
 use serde_json::Value;
@@ -41,7 +41,7 @@ pub struct Scene {
     /// Where it was read from.
     origin: Option<Arc<Origin>>,
     /// Files that were loaded, for copies of this scene and its other frames.
-    library: Library,
+    pub(crate) library: Library,
     /// What moves while the shutter is open, once somebody has asked.
     tracks: Arc<Mutex<Option<CachedTracks>>>,
 }
@@ -78,7 +78,7 @@ impl Scene {
 
     /// Reads a scene from files in memory, as [`Scene::load`] does from those of the disk.
     pub fn from_bundle(bundle: Bundle, name: &str) -> Result<Self, SceneError> {
-        Self::read(Path::new(name), Library::new(Store::Memory(bundle)))
+        Self::read(Path::new(name), Library::new(bundle.into()))
     }
 
     fn read(path: &Path, library: Library) -> Result<Self, SceneError> {

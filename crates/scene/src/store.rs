@@ -1,5 +1,6 @@
 //! Where the files of a scene come from: the disk, or memory where there is none.
 
+use crate::asset::Assets;
 use crate::document::{self, Unreadable, text_of};
 use crate::import::{self, Content, ImportError, Limits};
 use std::borrow::Cow;
@@ -8,14 +9,28 @@ use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// Where the files of a scene come from.
+/// Where the files of a scene come from, and the scene's assets.
 #[derive(Clone, Debug, Default)]
-pub enum Store {
+pub struct Store {
+    place: Place,
+    pub(crate) assets: Assets,
+}
+
+/// Where files come from.
+#[derive(Clone, Debug, Default)]
+enum Place {
     /// The file system.
     #[default]
     Disk,
     /// These files alone.
     Memory(Bundle),
+}
+
+impl From<Bundle> for Store {
+    /// A store of the files of a bundle alone.
+    fn from(bundle: Bundle) -> Self {
+        Self { place: Place::Memory(bundle), assets: Assets::default() }
+    }
 }
 
 /// Files in memory, by name. Cheap to clone.
@@ -40,9 +55,9 @@ impl Bundle {
 impl Store {
     /// The text of a file.
     pub(crate) fn text(&self, path: &Path) -> Result<String, Unreadable> {
-        match self {
-            Self::Disk => document::read_text(path),
-            Self::Memory(bundle) => {
+        match &self.place {
+            Place::Disk => document::read_text(path),
+            Place::Memory(bundle) => {
                 let (_, bytes) = bundle.find(path).ok_or_else(|| Unreadable::Io(ErrorKind::NotFound.into()))?;
                 text_of(bytes.clone()).map_err(Unreadable::NotText)
             }
@@ -51,19 +66,24 @@ impl Store {
 
     /// What a file holds that is given as a scene.
     pub(crate) fn content(&self, path: &Path) -> Content {
-        match self {
-            Self::Disk => Content::of_file(path),
-            Self::Memory(bundle) => {
+        match &self.place {
+            Place::Disk => Content::of_file(path),
+            Place::Memory(bundle) => {
                 bundle.find(path).map_or(Content::Scene, |(_, bytes)| Content::of(path, bytes, bytes.len() as u64))
             }
         }
     }
 
-    /// The bytes of a mesh file.
+    /// The bytes of a file or asset.
     pub(crate) fn mesh(&self, path: &Path, limits: &Limits) -> Result<Cow<'_, [u8]>, ImportError> {
-        match self {
-            Self::Disk => import::read(path, limits).map(Cow::Owned),
-            Self::Memory(bundle) => match bundle.find(path) {
+        if let Some(asset) = self.assets.at(path) {
+            let wrong = || std::io::Error::other("the asset of this name holds pixels, not the bytes of a file");
+            let bytes = asset.bytes().map(Cow::Borrowed);
+            return bytes.ok_or_else(|| ImportError { path: path.to_owned(), fault: wrong().into() });
+        }
+        match &self.place {
+            Place::Disk => import::read(path, limits).map(Cow::Owned),
+            Place::Memory(bundle) => match bundle.find(path) {
                 Some((_, bytes)) => Ok(Cow::Borrowed(bytes)),
                 None => {
                     Err(ImportError { path: path.to_owned(), fault: std::io::Error::from(ErrorKind::NotFound).into() })
@@ -74,9 +94,12 @@ impl Store {
 
     /// The name that tells whether two files are one.
     pub(crate) fn true_name(&self, path: &Path) -> PathBuf {
-        match self {
-            Self::Disk => std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
-            Self::Memory(bundle) => bundle.find(path).map_or_else(|| plain(path), |(name, _)| name.clone()),
+        if self.assets.at(path).is_some() {
+            return path.to_owned();
+        }
+        match &self.place {
+            Place::Disk => std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
+            Place::Memory(bundle) => bundle.find(path).map_or_else(|| plain(path), |(name, _)| name.clone()),
         }
     }
 }
@@ -101,7 +124,7 @@ mod tests {
 
     fn bundle(names: &[&str]) -> Store {
         let file = |name: &&str| ((*name).to_owned(), name.as_bytes().to_vec());
-        Store::Memory(names.iter().map(file).collect())
+        names.iter().map(file).collect::<Bundle>().into()
     }
 
     #[test]

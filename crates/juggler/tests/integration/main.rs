@@ -10,6 +10,7 @@
 )]
 
 mod area_lights;
+mod assets;
 mod building;
 mod changes;
 mod cryptomatte;

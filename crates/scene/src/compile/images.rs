@@ -1,6 +1,7 @@
 //! Pictures: each file read and prepared once, shared by all textures, frames and copies of a scene.
 
 use super::meshes::{Files, Library, explain, state};
+use crate::asset::Asset;
 use crate::description::Description;
 use crate::import::Limits;
 use crate::item::Item;
@@ -81,6 +82,9 @@ impl Library {
 
 impl Picture {
     fn load(path: &std::path::Path, space: ColorSpace, store: &Store) -> Self {
+        if let Some((asset, image)) = store.assets.at(path).and_then(|asset| Some((asset, asset.image()?))) {
+            return Self::from_image(asset, image, path);
+        }
         let state = state(path);
         let bytes = match store.mesh(path, &Limits::default()) {
             Ok(bytes) => bytes,
@@ -93,6 +97,16 @@ impl Picture {
             pyramid(raster, space).map(Arc::new).ok_or_else(|| format!("`{}`: holds no picture", path.display()))
         });
         Self { digest, pixels, state }
+    }
+}
+
+impl Picture {
+    /// Picture of pixels in linear light, whatever the color space that a texture names.
+    fn from_image(asset: &Asset, image: &juggler_math::Image, path: &std::path::Path) -> Self {
+        let numbers = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
+        let pixels = Pyramid::of_numbers([image.width(), image.height()], 3, numbers).map(Arc::new);
+        let pixels = pixels.ok_or_else(|| format!("`{}`: holds no picture", path.display()));
+        Self { digest: asset.digest(), pixels, state: None }
     }
 }
 

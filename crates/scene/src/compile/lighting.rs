@@ -66,9 +66,13 @@ impl Lighting {
 impl Library {
     fn panorama(&self, path: &std::path::Path) -> Arc<Shelved<Panorama>> {
         let shown = path.display();
+        let panorama = |image| Panorama::new(image).map_err(|wrong| format!("`{shown}` {wrong}"));
+        if let Some((asset, image)) = self.store().assets.at(path).and_then(|asset| Some((asset, asset.image()?))) {
+            return self.lighting().panoramas.keep(path, asset.digest(), || panorama((**image).clone()));
+        }
         self.lighting().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
             let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &MAX_PICTURE);
-            Panorama::new(image.map_err(|error| error.to_string())?).map_err(|wrong| format!("`{shown}` {wrong}"))
+            panorama(image.map_err(|error| error.to_string())?)
         })
     }
 

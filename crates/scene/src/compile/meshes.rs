@@ -2,6 +2,7 @@
 
 use super::images::Pictures;
 use super::lighting::Lighting;
+use crate::asset::Asset;
 use crate::description::Description;
 use crate::document::Sources;
 use crate::import::{Fault, ImportError, Limits, parse};
@@ -45,6 +46,12 @@ impl Library {
     /// Of files that come from there.
     pub fn new(store: Store) -> Self {
         Self { store, ..Self::default() }
+    }
+
+    /// Adds an asset under a name, or replaces the asset of that name. Other scenes that share the
+    /// library's files are not changed.
+    pub fn insert_asset(&mut self, name: String, asset: Asset) {
+        self.store.assets.insert(name, asset);
     }
 
     /// Where files come from.
@@ -142,8 +149,12 @@ pub struct Files<'s> {
 }
 
 impl Files<'_> {
-    /// A file named at `path`, relative to the scene file that names it.
+    /// A file named at `path`: an asset of that name, or a file relative to the scene file that names
+    /// it.
     pub fn locate(&self, path: &Path, file: &str) -> PathBuf {
+        if let Some(asset) = self.library.store().assets.path_of(file) {
+            return asset;
+        }
         let place = self.scene.item_of(path).and_then(|(item, _)| item.place());
         self.sources.folder(place).join(file)
     }

@@ -68,6 +68,15 @@ impl<T> Shelf<T> {
         Arc::clone(self.entries().entry(name).or_insert(Arc::new(item)))
     }
 
+    /// Content of an asset at `path`, with the hash of the asset: what `make` makes of it.
+    pub fn keep(&self, path: &Path, digest: [u8; 32], make: impl FnOnce() -> Result<T, String>) -> Arc<Shelved<T>> {
+        if let Some(known) = self.entries().get(path) {
+            return Arc::clone(known);
+        }
+        let item = Shelved { digest, content: make().map(Arc::new), state: None };
+        Arc::clone(self.entries().entry(path.to_owned()).or_insert(Arc::new(item)))
+    }
+
     fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<Shelved<T>>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

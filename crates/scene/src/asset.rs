@@ -1,0 +1,128 @@
+//! Assets: files that a scene holds in memory, by name.
+
+use juggler_math::Image;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// An asset: the content of a file in memory. It is immutable, and clones share it.
+#[derive(Clone, Debug)]
+pub struct Asset {
+    content: Content,
+    /// BLAKE3 hash of the content, computed once.
+    digest: [u8; 32],
+}
+
+/// Content of an asset.
+#[derive(Clone, Debug)]
+enum Content {
+    /// Bytes of a file, or of a part of one: a mesh, a picture, a light profile.
+    File(Arc<[u8]>),
+    /// Pixels of a picture, linear light.
+    Image(Arc<Image>),
+}
+
+/// Assets are equal when their contents have the same hash.
+impl PartialEq for Asset {
+    fn eq(&self, other: &Self) -> bool {
+        self.digest == other.digest
+    }
+}
+
+impl Asset {
+    /// Creates an asset of the bytes of a file.
+    pub fn from_bytes(bytes: impl Into<Arc<[u8]>>) -> Self {
+        let bytes = bytes.into();
+        let digest = blake3::hash(&bytes).into();
+        Self { content: Content::File(bytes), digest }
+    }
+
+    /// Creates an asset of pixels in linear light. The pixels are not copied until a texture or
+    /// background is prepared from them.
+    pub fn from_image(image: impl Into<Arc<Image>>) -> Self {
+        let image = image.into();
+        let mut hasher = blake3::Hasher::new();
+        // No file begins like this, so bytes and pixels never have the same hash.
+        hasher.update(b"pixels in linear light\0");
+        hasher.update(&image.width().to_le_bytes());
+        for channel in image.pixels().iter().flat_map(|pixel| pixel.to_array()) {
+            hasher.update(&channel.to_le_bytes());
+        }
+        Self { digest: hasher.finalize().into(), content: Content::Image(image) }
+    }
+
+    /// BLAKE3 hash of the content.
+    pub fn digest(&self) -> [u8; 32] {
+        self.digest
+    }
+
+    /// Bytes of a file, if the asset is one.
+    pub fn bytes(&self) -> Option<&[u8]> {
+        match &self.content {
+            Content::File(bytes) => Some(bytes),
+            Content::Image(_) => None,
+        }
+    }
+
+    /// Pixels in linear light, if the asset is an image.
+    pub fn image(&self) -> Option<&Arc<Image>> {
+        match &self.content {
+            Content::File(_) => None,
+            Content::Image(image) => Some(image),
+        }
+    }
+}
+
+/// Assets of a scene by name. Clones share them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Assets(Arc<BTreeMap<String, Asset>>);
+
+impl Assets {
+    /// Adds an asset under a name, or replaces the asset of that name.
+    pub fn insert(&mut self, name: String, asset: Asset) {
+        Arc::make_mut(&mut self.0).insert(name, asset);
+    }
+
+    /// Path that stands for an asset, by which caches of loaded files know it: its content's hash as
+    /// a folder, and its name.
+    pub fn path_of(&self, name: &str) -> Option<PathBuf> {
+        let digest = blake3::Hash::from_bytes(self.0.get(name)?.digest);
+        Some(format!("asset {}/{name}", &digest.to_hex()[..32]).into())
+    }
+
+    /// Asset of a path that [`path_of`](Self::path_of) has given.
+    pub fn at(&self, path: &Path) -> Option<&Asset> {
+        let (_, name) = path.to_str()?.strip_prefix("asset ")?.split_once('/')?;
+        self.0.get(name).filter(|_| self.path_of(name).is_some_and(|own| own == path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use juggler_math::Rgb;
+
+    #[test]
+    fn paths_lead_back_to_assets_of_the_same_content() {
+        let mut assets = Assets::default();
+        assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"png"));
+        let path = assets.path_of("car.glb#images/3").unwrap();
+        assert_eq!(assets.at(&path), Some(&Asset::from_bytes(*b"png")));
+        assets.insert("car.glb#images/3".into(), Asset::from_bytes(*b"other"));
+        assert_eq!(assets.at(&path), None, "the name has another content now");
+        assets.insert("/of the root".into(), Asset::from_bytes(*b"root"));
+        assert_eq!(assets.at(&assets.path_of("/of the root").unwrap()), Some(&Asset::from_bytes(*b"root")));
+        assert_eq!(assets.path_of("none"), None);
+        assert_eq!(assets.at(Path::new("models/car.glb")), None);
+    }
+
+    #[test]
+    fn every_pixel_and_the_shape_of_an_image_count() {
+        let image = |width, height, color| Asset::from_image(Image::filled(width, height, color));
+        let plain = image(2, 3, Rgb::WHITE);
+        assert_eq!(plain, image(2, 3, Rgb::WHITE));
+        assert_ne!(plain, image(3, 2, Rgb::WHITE));
+        assert_ne!(plain, image(2, 3, Rgb::new(1.0, 1.0, 1.0f32.next_up())));
+        assert_ne!(plain, Asset::from_bytes(*b""));
+    }
+}
