@@ -102,6 +102,9 @@ impl Memory {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             world.push(part(format!("the picture `{name}`"), estimate.kept));
         }
+        if needs.images > 0 {
+            world.push(part("images in memory", needs.images));
+        }
         let more = frames::more_worlds(scene, &settings.aovs);
         world.push(part(BESIDE, more.saturating_mul(of_scene(&needs))));
         building.extend_from_slice(world.get(2..).unwrap_or_default());

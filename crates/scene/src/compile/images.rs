@@ -165,6 +165,13 @@ impl Files<'_> {
         }
     }
 
+    /// Bytes that become of images in memory among these files, by their numbers of pixels.
+    pub(super) fn image_bytes(&self, files: &[PathBuf], bytes: impl Fn(usize) -> usize) -> u64 {
+        let assets = &self.library.store().assets;
+        let images = files.iter().filter_map(|file| assets.at(file)?.image());
+        images.map(|image| bytes(image.pixels().len()) as u64).fold(0, u64::saturating_add)
+    }
+
     /// The file of an image texture.
     fn of_texture(&self, name: &str, image: &Image) -> PathBuf {
         self.locate(&Path::root().key("textures").key(name), &image.file)

@@ -9,6 +9,7 @@ use super::meshes::Files;
 use crate::description::{Description, Object};
 use crate::item::Item;
 use crate::path::Trail;
+use juggler_light::background::Panorama;
 use juggler_material::{AnyMaterial, MaterialRef};
 use juggler_shape::AnyShape;
 use std::collections::BTreeSet;
@@ -25,6 +26,8 @@ pub struct Needs {
     pub pictures: BTreeSet<PathBuf>,
     /// Pictures of everything around that exist, each once.
     pub panoramas: BTreeSet<PathBuf>,
+    /// Bytes of textures and panoramas that are made of images in memory.
+    pub images: u64,
     /// Triangles of meshes that stand in the scene itself.
     pub triangles: u64,
     /// Objects that are stored, those of groups that are stored once counted once.
@@ -48,10 +51,16 @@ impl Needs {
         let shadows = scene.lights.iter().map(|light| u64::from(light.shadow_samples())).sum();
         let text = files.sources.bytes_to_read();
         let mut needs = Self { text, objects, emitters, shadows, ..Self::default() };
-        let pictures = pictures(scene, &files).into_iter();
-        needs.pictures = pictures.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
-        let panoramas = lighting::files(scene, &files).into_iter().filter(|(_, purpose)| *purpose == Purpose::Panorama);
-        needs.panoramas = panoramas.filter_map(|(file, _)| std::fs::canonicalize(file).ok()).collect();
+        let pictures: Vec<PathBuf> = pictures(scene, &files).into_iter().map(|(file, _)| file).collect();
+        let panoramas = lighting::files(scene, &files).into_iter();
+        let panoramas: Vec<PathBuf> =
+            panoramas.filter(|(_, p)| *p == Purpose::Panorama).map(|(file, _)| file).collect();
+        // An image is copied to floats with smaller copies, or to a panorama with its table.
+        needs.images = files
+            .image_bytes(&pictures, |pixels| 16 * pixels)
+            .saturating_add(files.image_bytes(&panoramas, Panorama::bytes));
+        needs.pictures = pictures.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
+        needs.panoramas = panoramas.into_iter().filter_map(|file| std::fs::canonicalize(file).ok()).collect();
         scene.materials.values().for_each(|material| needs.material(material));
         let groups = Trail::Root.key("groups");
         scene.groups.iter().for_each(|(name, objects)| needs.add(objects, files, &groups.key(name)));
