@@ -5,7 +5,7 @@
 ///
 /// `pub enum AnyShape: Shape { sphere::Sphere, ... }` declares descriptions, which scene files hold:
 /// the enum has JSON and a schema, and its methods are those of the trait `Shape`, called through
-/// `dyn Shape`. So a new method needs no line here. [`name`](Self::name) is a kind's name in JSON.
+/// `dyn Shape`. So a new method needs no line here. `name` is a kind's name in JSON.
 ///
 /// `pub enum Lobe: static ScatteringLobe { lambert::Lambert, ... } fn ...;` declares values of the
 /// inner loops: the enum has the methods that follow the list of kinds, each a `match` that calls
