@@ -127,6 +127,8 @@ impl Survey {
             found.count(&self.head);
             return Ok(found);
         }
+        // The looks below take its memory.
+        self.head = Vec::new();
         let mut seen = 0;
         for i in 0..LOOKS {
             let bytes = look(&mut self.file, (size - LOOK) / (LOOKS - 1) * i, LOOK)?;
