@@ -11,7 +11,7 @@ const MIB: u64 = 1 << 20;
 /// Memory budget in bytes, from the need of an optimized program in MiB: unoptimized code takes
 /// 12 MiB more.
 fn budget(mib: u64) -> u64 {
-    (mib + if cfg!(debug_assertions) { 12 } else { 0 }) * MIB
+    (mib + if cfg!(debug_assertions) { 14 } else { 0 }) * MIB
 }
 
 /// Address space that is reserved and never used, so that `ulimit -v` is to be larger than `--max-memory` by it: the
