@@ -16,7 +16,7 @@
 
 use super::energy::{self, InterfaceLoss, Scramble, Side};
 use super::ggx::Ggx;
-use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
+use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum, visible};
 use super::{BsdfSample, Film, Scatter, choose, fresnel};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
@@ -378,7 +378,7 @@ impl ScatteringLobe for Dielectric {
         if !self.is_smooth() || wo.z == 0.0 {
             return Deltas::new();
         }
-        self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+        visible(self.both(wo))
     }
 
     #[inline]

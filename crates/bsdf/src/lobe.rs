@@ -67,8 +67,8 @@ pub trait ScatteringLobe: Copy {
 }
 
 impl Lobe {
-    /// Scattering that paths count for the lobe; multiple scattering of a rough mirror counts as its
-    /// rest.
+    /// Scattering that paths count for the lobe; multiple scattering of a rough mirror counts as
+    /// its rest.
     pub fn scatter(&self) -> Scatter {
         if self.is_specular() {
             Scatter::Specular
@@ -79,8 +79,8 @@ impl Lobe {
         }
     }
 
-    /// Share of a glossy lobe under layers that spreads light like a matt one, 0 to 1: fitted by its
-    /// roughness, so that balls of white metal stay white within 0.01 on average under coat and
+    /// Share of a glossy lobe under layers that spreads light like a matt one, 0 to 1: fitted by
+    /// its roughness, so that balls of white metal stay white within 0.01 on average under coat and
     /// sheen of any roughness, and each direction within 0.04.
     #[inline]
     pub(crate) fn spread(&self) -> f32 {
@@ -92,6 +92,11 @@ impl Lobe {
 #[inline]
 pub(crate) fn delta(wi: Vec3, weight: Rgb, ior: f32) -> BsdfSample {
     BsdfSample { wi, weight, pdf: 1.0, scatter: Scatter::Specular, ior }
+}
+
+/// Deltas whose weight is not black.
+pub(crate) fn visible(deltas: [BsdfSample; 2]) -> Deltas {
+    deltas.into_iter().filter(|delta| !delta.weight.is_black()).collect()
 }
 
 /// One of two deltas, by the energy that each carries.

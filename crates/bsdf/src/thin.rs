@@ -8,7 +8,7 @@
 
 use super::energy::Scramble;
 use super::ggx::{Facing, Ggx};
-use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum};
+use super::lobe::{Deltas, delta, one_of_two, share_of_first, sum, visible};
 use super::{BsdfSample, Film, Scatter, energy, fresnel};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
@@ -176,7 +176,7 @@ impl ScatteringLobe for ThinDielectric {
         if !self.is_smooth() || wo.z == 0.0 {
             return Deltas::new();
         }
-        self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+        visible(self.both(wo))
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! A mirror and a window in one, each with a colour of its own, as Whitted's rays see them (1980): two deltas, with or
 //! without Fresnel's equations between them.
 
-use super::lobe::{Deltas, delta, one_of_two};
+use super::lobe::{Deltas, delta, one_of_two, visible};
 use super::{BsdfSample, fresnel};
 use crate::ScatteringLobe;
 use juggler_math::{Rgb, Vec2, Vec3};
@@ -72,7 +72,7 @@ impl ScatteringLobe for Whitted {
         if self.is_black_from(wo) {
             return Deltas::new();
         }
-        self.both(wo).into_iter().filter(|delta| !delta.weight.is_black()).collect()
+        visible(self.both(wo))
     }
 
     #[inline]

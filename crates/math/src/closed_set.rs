@@ -18,23 +18,7 @@ macro_rules! closed_set {
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: static $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }
         $($method:tt)+
     ) => {
-        $(pub use $file::$Kind;)+
-
-        $(#[$attribute])*
-        $vis enum $Set {
-            $(
-                #[allow(missing_docs, reason = "the kind's own documentation says it")]
-                $Kind($Kind)
-            ),+
-        }
-
-        $(impl From<$Kind> for $Set {
-            #[inline]
-            fn from(kind: $Kind) -> Self {
-                Self::$Kind(kind)
-            }
-        })+
-
+        $crate::closed_set! { @enum $(#[$attribute])* $vis enum $Set { $($file::$Kind),+ } }
         $crate::closed_set! { @methods $Set $Trait {$($Kind)+} $($method)+ }
     };
 
@@ -53,23 +37,41 @@ macro_rules! closed_set {
         }
     };
 
+    (@enum $(#[$attribute:meta])* $vis:vis enum $Set:ident { $($file:ident::$Kind:ident),+ }) => {
+        $(pub use $file::$Kind;)+
+
+        $(#[$attribute])*
+        $vis enum $Set {
+            $(
+                #[allow(missing_docs, reason = "the kind's own documentation says it")]
+                $Kind($Kind)
+            ),+
+        }
+
+        $(impl From<$Kind> for $Set {
+            #[inline]
+            fn from(kind: $Kind) -> Self {
+                Self::$Kind(kind)
+            }
+        })+
+    };
+
     (@methods $Set:ident $Trait:ident $kinds:tt
-        $(fn $method:ident(&self $(, $argument:ident: $Argument:ty)*) -> $Result:ty;)+
+        $(fn $method:ident(&self $(, $argument:ident: $Argument:ty)*) $(-> $Result:ty)?;)+
     ) => {
         impl $Set {
             $($crate::closed_set! {
-                @method $Trait $kinds ($($argument)*) fn $method(&self $(, $argument: $Argument)*) -> $Result;
+                @method $Trait $kinds ($($argument)*) fn $method(&self $(, $argument: $Argument)*) $(-> $Result)?;
             })+
         }
     };
 
     (@method $Trait:ident {$($Kind:ident)+} $arguments:tt
-        fn $method:ident(&self $(, $argument:ident: $Argument:ty)*) -> $Result:ty;
+        fn $method:ident(&self $(, $argument:ident: $Argument:ty)*) $(-> $Result:ty)?;
     ) => {
         #[doc = concat!("Calls [`", stringify!($Trait), "::", stringify!($method), "`] of the kind.")]
         #[inline]
-        #[allow(dead_code, reason = "every method of the family can be called")]
-        pub fn $method(&self $(, $argument: $Argument)*) -> $Result {
+        pub fn $method(&self $(, $argument: $Argument)*) $(-> $Result)? {
             match self {
                 $(Self::$Kind(kind) => $crate::closed_set!(@call $Trait $method kind $arguments)),+
             }
@@ -81,23 +83,12 @@ macro_rules! closed_set {
     };
 
     ($(#[$attribute:meta])* $vis:vis enum $Set:ident: $Trait:ident { $($file:ident::$Kind:ident),+ $(,)? }) => {
-        $(pub use $file::$Kind;)+
-
-        $(#[$attribute])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-        #[serde(rename_all = "snake_case")]
-        $vis enum $Set {
-            $(
-                #[allow(missing_docs, reason = "the kind's own documentation says it")]
-                $Kind($Kind)
-            ),+
+        $crate::closed_set! {
+            @enum $(#[$attribute])*
+            #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+            #[serde(rename_all = "snake_case")]
+            $vis enum $Set { $($file::$Kind),+ }
         }
-
-        $(impl From<$Kind> for $Set {
-            fn from(kind: $Kind) -> Self {
-                Self::$Kind(kind)
-            }
-        })+
 
         impl std::ops::Deref for $Set {
             type Target = dyn $Trait;
@@ -113,9 +104,6 @@ macro_rules! closed_set {
         }
 
         impl $Set {
-            /// Names of all kinds, as JSON has them, in the order of their declaration.
-            pub const NAMES: &'static [&'static str] = &[$($crate::kind_name!($Kind)),+];
-
             /// Name of the kind, as JSON has it.
             pub fn name(&self) -> &'static str {
                 match self { $(Self::$Kind(_) => $crate::kind_name!($Kind)),+ }

@@ -31,7 +31,7 @@ juggler_math::closed_set! {
     fn at_pixel(&self, pixel: UVec2) -> Pattern;
     fn first_coordinate(&self, index: u32, is_first: bool, seed: u32) -> f32;
     fn point(&self, index: u32, is_first: bool, seed: u32) -> Vec2;
-    fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]) -> ();
+    fn fill(&self, first: u32, seed: u32, points: &mut [Vec2]);
 }
 
 /// Points in [0, 1)² for the samples of a pixel, a set a dimension: pure functions.
