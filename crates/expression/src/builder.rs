@@ -9,7 +9,8 @@ use std::ops::Range;
 /// Operand of an operation that is not on the tape yet.
 #[derive(Clone, Copy, Debug)]
 pub enum Operand {
-    /// Number known when the text is compiled. It is put on the tape when an operation needs it there.
+    /// Number known when the text is compiled. It is put on the tape when an operation needs it
+    /// there.
     Constant(f64),
     /// Result of an operation on the tape.
     Register(Register),
@@ -91,7 +92,8 @@ impl<'t> Builder<'t> {
         self.op(Op::Ternary(op, operands))
     }
 
-    /// Call of a function. Returns `None` for a number of arguments that the function does not take.
+    /// Call of a function. Returns `None` for a number of arguments that the function does not
+    /// take.
     pub fn call(&mut self, code: Code, arguments: &[Operand]) -> Result<Option<Operand>, Full> {
         let result = match (code, arguments) {
             (Code::Unary(op), [x]) => self.unary(op, *x)?,

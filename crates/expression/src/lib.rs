@@ -1,5 +1,5 @@
-//! Expressions of scene files, such as `40 * sin(2 * pi * frame / frames)`: compiled once, evaluated
-//! for any values of their names.
+//! Expressions of scene files, such as `40 * sin(2 * pi * frame / frames)`: compiled once,
+//! evaluated for any values of their names.
 //!
 //! ```
 //! use juggler_expression::{Names, PointEvaluator, Program, Quantity};

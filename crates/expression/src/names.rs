@@ -2,8 +2,8 @@
 
 use crate::FUNCTIONS;
 use crate::error::{Checked, ExpressionError, fail};
+use indexmap::IndexMap;
 use juggler_math::suggest::{closest, did_you_mean};
-use std::collections::HashMap;
 use std::ops::Range;
 
 /// Names of the components of a vector: `ball.x`.
@@ -16,8 +16,8 @@ pub enum Quantity {
     Number(f64),
     /// One to four numbers, of which expressions use single components.
     Vector(Vec<f64>),
-    /// A value that is not known because of an error that has been reported. Expressions that use it
-    /// have no known value either.
+    /// A value that is not known because of an error that has been reported. Expressions that use
+    /// it have no known value either.
     Unknown,
 }
 
@@ -29,37 +29,26 @@ impl From<f64> for Quantity {
 
 /// Names that expressions may use, with their values, in order of insertion.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Names {
-    quantities: HashMap<String, Quantity>,
-    /// Names in order of insertion, for messages.
-    order: Vec<String>,
-}
+pub struct Names(IndexMap<String, Quantity>);
 
 impl Names {
     /// Sets the value of a name.
     pub fn insert(&mut self, name: impl Into<String>, quantity: Quantity) {
-        let name = name.into();
-        match self.quantities.get_mut(&name) {
-            Some(known) => *known = quantity,
-            None => {
-                self.order.push(name.clone());
-                self.quantities.insert(name, quantity);
-            }
-        }
+        self.0.insert(name.into(), quantity);
     }
 
     /// Value of a name; `None` for an unknown name.
     pub fn get(&self, name: &str) -> Option<&Quantity> {
-        self.quantities.get(name)
+        self.0.get(name)
     }
 
     /// Whether the name has been inserted.
     pub fn contains(&self, name: &str) -> bool {
-        self.quantities.contains_key(name)
+        self.0.contains_key(name)
     }
 
-    /// Number that `name` or `name.component` stands for, written at `at`. Returns `None` if the name's
-    /// value is [`Quantity::Unknown`].
+    /// Number that `name` or `name.component` stands for, written at `at`. Returns `None` if the
+    /// name's value is [`Quantity::Unknown`].
     pub(crate) fn number(&self, name: &str, component: Option<&str>, at: &Range<usize>) -> Checked<Option<f64>> {
         match (self.get(name), component) {
             (Some(Quantity::Unknown), _) => Ok(None),
@@ -77,16 +66,14 @@ impl Names {
             (None, None) if let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) => {
                 fail(at.clone(), format!("`{name}` is a function: write {}", function.usage))
             }
-            (None, _) => Err(unknown(name, at.clone(), "nothing", self.order.iter().map(String::as_str))),
+            (None, _) => Err(unknown(name, at.clone(), "nothing", self.0.keys().map(String::as_str))),
         }
     }
 }
 
 impl<S: Into<String>> FromIterator<(S, Quantity)> for Names {
     fn from_iter<I: IntoIterator<Item = (S, Quantity)>>(quantities: I) -> Self {
-        let mut names = Self::default();
-        quantities.into_iter().for_each(|(name, quantity)| names.insert(name, quantity));
-        names
+        Self(quantities.into_iter().map(|(name, quantity)| (name.into(), quantity)).collect())
     }
 }
 

@@ -13,13 +13,14 @@ pub struct PointEvaluator {
 }
 
 impl PointEvaluator {
-    /// Result of a program for values of its [inputs](Program::inputs). It may be infinite or NaN. A
-    /// missing value counts as NaN.
+    /// Result of a program for values of its [inputs](Program::inputs). It may be infinite or NaN.
+    /// A missing value counts as NaN.
     pub fn evaluate(&mut self, program: &Program, inputs: &[f64]) -> f64 {
         run(program, inputs, &mut self.registers)
     }
 
-    /// Value of a program, always finite. Returns `None` if it uses a name whose value is not known.
+    /// Value of a program, always finite. Returns `None` if it uses a name whose value is not
+    /// known.
     ///
     /// # Errors
     /// A name is unknown or of another kind than the program uses, or the result is not finite.

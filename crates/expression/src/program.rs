@@ -8,8 +8,8 @@ use std::ops::Range;
 
 /// Compiled expression: a tape of operations in static single assignment form.
 ///
-/// A program depends on the text only. [`Names`] give the values of its inputs at each evaluation, and
-/// names that do not fit the program are reported then, as if the text were compiled again.
+/// A program depends on the text only. [`Names`] give the values of its inputs at each evaluation,
+/// and names that do not fit the program are reported then, as if the text were compiled again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     text_length: usize,
@@ -30,8 +30,8 @@ pub struct Input {
 }
 
 impl Program {
-    /// Compiles an expression. Names are checked against `names`, so that the first error in the text
-    /// is the one that is reported, whatever its kind.
+    /// Compiles an expression. Names are checked against `names`, so that the first error in the
+    /// text is the one that is reported, whatever its kind.
     ///
     /// # Errors
     /// The text is not an expression, exceeds a limit, or uses a name that is unknown or of another
@@ -57,7 +57,8 @@ impl Program {
         Ok(Self { text_length: text.len(), inputs: inputs.into(), constants: constants.into(), ops: ops.into() })
     }
 
-    /// Inputs in the order of their first use. Inputs that the result does not depend on are among them.
+    /// Inputs in the order of their first use. Inputs that the result does not depend on are among
+    /// them.
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }

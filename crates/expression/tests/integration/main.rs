@@ -1,4 +1,4 @@
-//! Tests of expressions by way of the public interface.
+//! Tests of expressions through the public interface.
 
 #![allow(
     clippy::unwrap_used,

@@ -17,7 +17,8 @@ enum Tree {
 const NUMBERS: [&str; 10] = ["0", "1", "2", "0.5", "3", ".1", "1e300", "1e-300", "7.25", "2.5E-1"];
 const VALUES: [(&str, f64); 6] =
     [("frame", 7.5), ("zero", 0.0), ("minus", -0.0), ("v.x", -1.25), ("v.y", 1e200), ("v.z", 3.0)];
-/// Operators with the precedence of the result, the least of the left operand and that of the right operand.
+/// Operators with the precedence of the result, the least of the left operand and that of the right
+/// operand.
 const OPERATORS: [(&str, [u8; 3]); 12] = [
     ("<", [0, 1, 1]),
     ("<=", [0, 1, 1]),
@@ -63,7 +64,8 @@ impl Tree {
         }
     }
 
-    /// Writes the expression with no more parentheses than it needs where one of `least` precedence may stand.
+    /// Writes the expression with no more parentheses than it needs where one of `least` precedence
+    /// may stand.
     fn write(&self, least: u8, text: &mut String) {
         let [own, left, right] = self.precedence();
         let opens = own < least;

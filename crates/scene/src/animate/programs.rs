@@ -4,11 +4,12 @@ use juggler_expression::{ExpressionError, Names, Program};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Maximum length of all expressions whose programs are kept, in bytes. Others are compiled each time.
+/// Maximum length of all expressions whose programs are kept, in bytes. Others are compiled each
+/// time.
 const MAX_KEPT: usize = 1 << 20;
 
-/// Compiled expressions by text, shared by a scene, its copies and its other frames. A program depends
-/// on its text only, so it stays valid whatever else changes in the scene.
+/// Compiled expressions by text, shared by a scene, its copies and its other frames. A program
+/// depends on its text only, so it stays valid whatever else changes in the scene.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Programs(Arc<Mutex<Kept>>);
 
