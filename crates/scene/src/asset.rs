@@ -45,8 +45,9 @@ impl Asset {
         // No file begins like this, so bytes and pixels never have the same hash.
         hasher.update(b"pixels in linear light\0");
         hasher.update(&image.width().to_le_bytes());
-        for channel in image.pixels().iter().flat_map(|pixel| pixel.to_array()) {
-            hasher.update(&channel.to_le_bytes());
+        for row in (0..image.height()).filter_map(|y| image.row(y)) {
+            let channels = row.iter().flat_map(|pixel| pixel.to_array());
+            hasher.update(&channels.flat_map(f32::to_le_bytes).collect::<Vec<u8>>());
         }
         Self { digest: hasher.finalize().into(), content: Content::Image(image) }
     }
@@ -65,7 +66,7 @@ impl Asset {
     }
 
     /// Pixels in linear light, if the asset is an image.
-    pub fn image(&self) -> Option<&Arc<Image>> {
+    pub fn image(&self) -> Option<&Image> {
         match &self.content {
             Content::File(_) => None,
             Content::Image(image) => Some(image),
@@ -83,8 +84,8 @@ impl Assets {
         Arc::make_mut(&mut self.0).insert(name, asset);
     }
 
-    /// Path that stands for an asset, by which caches of loaded files know it: its content's hash as
-    /// a folder, and its name.
+    /// Path that stands for an asset, by which caches of loaded files know it: its content's hash
+    /// as a folder, and its name.
     pub fn path_of(&self, name: &str) -> Option<PathBuf> {
         let digest = blake3::Hash::from_bytes(self.0.get(name)?.digest);
         Some(format!("asset {}/{name}", &digest.to_hex()[..32]).into())
@@ -94,6 +95,12 @@ impl Assets {
     pub fn at(&self, path: &Path) -> Option<&Asset> {
         let (_, name) = path.to_str()?.strip_prefix("asset ")?.split_once('/')?;
         self.0.get(name).filter(|_| self.path_of(name).is_some_and(|own| own == path))
+    }
+
+    /// Pixels of the image of a path that [`path_of`](Self::path_of) has given, and their hash.
+    pub fn image_at(&self, path: &Path) -> Option<(&Image, [u8; 32])> {
+        let asset = self.at(path)?;
+        Some((asset.image()?, asset.digest))
     }
 }
 

@@ -47,15 +47,16 @@ impl Scene {
     }
 
     /// Adds an image in memory under a name, in linear light. Textures and environments show it by
-    /// that name in place of a file's, such as [`Image::new`](juggler_texture::Image::new)`("wood")`.
+    /// that name in place of a file's, such as
+    /// [`Image::new`](juggler_texture::Image::new)`("wood")`.
     #[must_use]
     pub fn image(self, name: impl Into<String>, image: impl Into<Arc<juggler_math::Image>>) -> Self {
         self.asset(name, Asset::from_image(image))
     }
 
-    /// Adds an asset under a name: whatever names a file of that name, such as a mesh, a texture, an
-    /// environment or a light profile, takes the asset instead. A program that reads the scene's JSON
-    /// again must add the same assets.
+    /// Adds an asset under a name: whatever names a file of that name, such as a mesh, a texture,
+    /// an environment or a light profile, takes the asset instead. A program that reads the scene's
+    /// JSON again must add the same assets.
     #[must_use]
     pub fn asset(mut self, name: impl Into<String>, asset: Asset) -> Self {
         self.library.insert_asset(name.into(), asset);

@@ -1,7 +1,6 @@
 //! Pictures: each file read and prepared once, shared by all textures, frames and copies of a scene.
 
 use super::meshes::{Files, Library, explain, state};
-use crate::asset::Asset;
 use crate::description::Description;
 use crate::import::Limits;
 use crate::item::Item;
@@ -82,8 +81,8 @@ impl Library {
 
 impl Picture {
     fn load(path: &std::path::Path, space: ColorSpace, store: &Store) -> Self {
-        if let Some((asset, image)) = store.assets.at(path).and_then(|asset| Some((asset, asset.image()?))) {
-            return Self::from_image(asset, image, path);
+        if let Some((image, digest)) = store.assets.image_at(path) {
+            return Self::from_image(image, digest, path);
         }
         let state = state(path);
         let bytes = match store.mesh(path, &Limits::default()) {
@@ -102,11 +101,10 @@ impl Picture {
 
 impl Picture {
     /// Picture of pixels in linear light, whatever the color space that a texture names.
-    fn from_image(asset: &Asset, image: &juggler_math::Image, path: &std::path::Path) -> Self {
-        let numbers = image.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
-        let pixels = Pyramid::of_numbers([image.width(), image.height()], 3, numbers).map(Arc::new);
+    fn from_image(image: &juggler_math::Image, digest: [u8; 32], path: &std::path::Path) -> Self {
+        let pixels = Pyramid::of_numbers([image.width(), image.height()], 3, image.to_floats()).map(Arc::new);
         let pixels = pixels.ok_or_else(|| format!("`{}`: holds no picture", path.display()));
-        Self { digest: asset.digest(), pixels, state: None }
+        Self { digest, pixels, state: None }
     }
 }
 
@@ -168,8 +166,8 @@ impl Files<'_> {
     /// Bytes that become of images in memory among these files, by their numbers of pixels.
     pub(super) fn image_bytes(&self, files: &[PathBuf], bytes: impl Fn(usize) -> usize) -> u64 {
         let assets = &self.library.store().assets;
-        let images = files.iter().filter_map(|file| assets.at(file)?.image());
-        images.map(|image| bytes(image.pixels().len()) as u64).fold(0, u64::saturating_add)
+        let images = files.iter().filter_map(|file| assets.image_at(file));
+        images.map(|(image, _)| bytes(image.pixels().len()) as u64).fold(0, u64::saturating_add)
     }
 
     /// The file of an image texture.

@@ -67,8 +67,8 @@ impl Library {
     fn panorama(&self, path: &std::path::Path) -> Arc<Shelved<Panorama>> {
         let shown = path.display();
         let panorama = |image| Panorama::new(image).map_err(|wrong| format!("`{shown}` {wrong}"));
-        if let Some((asset, image)) = self.store().assets.at(path).and_then(|asset| Some((asset, asset.image()?))) {
-            return self.lighting().panoramas.keep(path, asset.digest(), || panorama((**image).clone()));
+        if let Some((image, digest)) = self.store().assets.image_at(path) {
+            return self.lighting().panoramas.keep(path, digest, || panorama(image.clone()));
         }
         self.lighting().panoramas.load(path, self.store(), &Limits::default(), |bytes| {
             let image = juggler_imaging::decode(&shown.to_string(), Cursor::new(bytes), &MAX_PICTURE);

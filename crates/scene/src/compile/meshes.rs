@@ -149,8 +149,8 @@ pub struct Files<'s> {
 }
 
 impl Files<'_> {
-    /// A file named at `path`: an asset of that name, or a file relative to the scene file that names
-    /// it.
+    /// A file named at `path`: an asset of that name, or a file relative to the scene file that
+    /// names it.
     pub fn locate(&self, path: &Path, file: &str) -> PathBuf {
         if let Some(asset) = self.library.store().assets.path_of(file) {
             return asset;

@@ -53,28 +53,30 @@ impl<T> Shelf<T> {
         limits: &Limits,
         read: impl FnOnce(&[u8]) -> Result<T, String>,
     ) -> Arc<Shelved<T>> {
-        let name = store.true_name(path);
-        if let Some(known) = self.entries().get(&name) {
-            return Arc::clone(known);
-        }
-        let state = state(path);
-        let item = match store.mesh(path, limits) {
-            Ok(bytes) => {
-                let digest = blake3::hash(&bytes).into();
-                Shelved { digest, content: read(&bytes).map(Arc::new), state }
+        self.known_or(store.true_name(path), || {
+            let state = state(path);
+            match store.mesh(path, limits) {
+                Ok(bytes) => {
+                    let digest = blake3::hash(&bytes).into();
+                    Shelved { digest, content: read(&bytes).map(Arc::new), state }
+                }
+                Err(error) => Shelved { digest: [0; 32], content: Err(explain(&error)), state },
             }
-            Err(error) => Shelved { digest: [0; 32], content: Err(explain(&error)), state },
-        };
-        Arc::clone(self.entries().entry(name).or_insert(Arc::new(item)))
+        })
     }
 
     /// Content of an asset at `path`, with the hash of the asset: what `make` makes of it.
     pub fn keep(&self, path: &Path, digest: [u8; 32], make: impl FnOnce() -> Result<T, String>) -> Arc<Shelved<T>> {
-        if let Some(known) = self.entries().get(path) {
+        self.known_or(path.to_owned(), || Shelved { digest, content: make().map(Arc::new), state: None })
+    }
+
+    /// Content of a name, made without the lock where it is not known yet.
+    fn known_or(&self, name: PathBuf, make: impl FnOnce() -> Shelved<T>) -> Arc<Shelved<T>> {
+        if let Some(known) = self.entries().get(&name) {
             return Arc::clone(known);
         }
-        let item = Shelved { digest, content: make().map(Arc::new), state: None };
-        Arc::clone(self.entries().entry(path.to_owned()).or_insert(Arc::new(item)))
+        let item = Arc::new(make());
+        Arc::clone(self.entries().entry(name).or_insert(item))
     }
 
     fn entries(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Arc<Shelved<T>>>> {
