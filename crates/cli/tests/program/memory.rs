@@ -1,6 +1,7 @@
 //! `--max-memory`: what is foretold is enough, what fits stays inside, what does not is refused with a reason.
 
 use crate::harness::{Folder, Run};
+use juggler::memory::PROGRAM;
 use juggler_math::testing::skipped;
 use serde_json::Value;
 use std::fs;
@@ -8,10 +9,10 @@ use std::process::{Command, Stdio};
 
 const MIB: u64 = 1 << 20;
 
-/// Memory budget in bytes, from the need of an optimized program in MiB: unoptimized code takes
-/// 14 MiB more.
+/// Memory budget in bytes, from the need of an optimized program in MiB, of which its code takes
+/// 20: unoptimized code takes more.
 fn budget(mib: u64) -> u64 {
-    (mib + if cfg!(debug_assertions) { 14 } else { 0 }) * MIB
+    (mib - 20) * MIB + PROGRAM
 }
 
 /// Address space that is reserved and never used, so that `ulimit -v` is to be larger than `--max-memory` by it: the

@@ -1,9 +1,10 @@
-//! A new kind of any family is one file and two lines: kinds are added to a copy of the source, which
-//! must compile, and render as the kinds that they are copies of.
+//! A new kind of any family is one file and two lines: kinds are added to a copy of the source,
+//! which must compile, and render as the kinds that they are copies of.
 
 mod families;
 
 use families::{Addition, FAMILIES};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -20,7 +21,8 @@ fn scratch() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("kinds")
 }
 
-/// Writes a file unless it says the same already, so that the compiler finds unchanged files unchanged.
+/// Writes a file unless it says the same already, so that the compiler finds unchanged files
+/// unchanged.
 fn write(path: &Path, content: &[u8]) {
     if fs::read(path).is_ok_and(|old| old == content) {
         return;
@@ -29,30 +31,28 @@ fn write(path: &Path, content: &[u8]) {
     fs::write(path, content).unwrap();
 }
 
-/// Paths of all files below a folder of the source, relative to the root, but for what is built.
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(root().join(folder)).unwrap() {
+/// Paths of all files below a folder, relative to `root`, but for what is built.
+fn files(root: &Path, folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(root.join(folder)).unwrap() {
         let entry = entry.unwrap();
         let path = folder.join(entry.file_name());
         let is_built = ["target", "node_modules"].iter().any(|name| entry.file_name() == *name);
         match entry.file_type().unwrap() {
-            kind if kind.is_dir() && !is_built => files(&path, found),
+            kind if kind.is_dir() && !is_built => files(root, &path, found),
             kind if kind.is_file() => found.push(path),
             _ => {}
         }
     }
 }
 
-/// Copies the source to the scratch folder and adds kinds. Files that an addition of another run left
+/// Copies the source to the scratch folder and adds kinds. Files of an earlier copy that are neither
 /// are removed.
 fn copy_with(additions: &[&Addition]) {
     let mut paths: Vec<PathBuf> = ["Cargo.toml", "Cargo.lock"].map(PathBuf::from).to_vec();
     for folder in ["crates", "scenes", "schema"] {
-        files(Path::new(folder), &mut paths);
+        files(&root(), Path::new(folder), &mut paths);
     }
-    for addition in FAMILIES {
-        let _ = fs::remove_file(scratch().join(addition.new_file()));
-    }
+    remove_others(&paths.iter().cloned().chain(additions.iter().map(|addition| addition.new_file())).collect());
     let pages: Vec<(PathBuf, String)> = additions.iter().flat_map(|addition| addition.pages()).collect();
     for path in paths {
         let text = fs::read(root().join(&path)).unwrap();
@@ -69,6 +69,19 @@ fn copy_with(additions: &[&Addition]) {
     }
     for addition in additions {
         write(&scratch().join(addition.new_file()), addition.source(&root()).as_bytes());
+    }
+}
+
+/// Removes files of the scratch folder that are not among these, and folders that become empty.
+fn remove_others(paths: &BTreeSet<PathBuf>) {
+    let mut old = Vec::new();
+    for folder in ["crates", "scenes", "schema"].map(Path::new).into_iter().filter(|f| scratch().join(f).exists()) {
+        files(&scratch(), folder, &mut old);
+    }
+    for path in old.into_iter().filter(|path| !paths.contains(path)) {
+        fs::remove_file(scratch().join(&path)).unwrap();
+        let folders = path.ancestors().skip(1);
+        folders.take_while(|folder| fs::remove_dir(scratch().join(folder)).is_ok()).for_each(drop);
     }
 }
 
