@@ -1,6 +1,6 @@
-//! Lesson 5: a surface and its colors from numbers in memory, a ball that moves, and edits of the
-//! finished scene, into `wave.png`, `wave_later.png` and `wave_polished.png`. Nothing is read from a
-//! file, and no array passes through a text.
+//! Lesson 4: a surface and its colors from numbers in memory, a ball that moves, and edits of the
+//! finished scene, into `wave.png`, `wave_later.png` and `wave_polished.png`. Nothing is read from
+//! a file, and no array passes through a text.
 //!
 //! `cargo run --release --example 4_meshes_images_and_motion`
 
@@ -77,7 +77,8 @@ fn main() -> Result<(), Error> {
         scene = scene.image("colors", image);
     }
 
-    // Expressions of the frame move the ball around the wave; the shutter stays open for half a frame.
+    // Expressions of the frame move the ball around the wave; the shutter stays open for half a
+    // frame.
     let path = json!([{"translate": ["=0.62 * cos(frame / 12)", -0.02, "=0.62 * sin(frame / 12)"]}]);
     let mut scene = scene.with_value("/objects/2/transform", path)?;
     scene.description.render.shutter = [0.0, 0.5];
@@ -85,7 +86,8 @@ fn main() -> Result<(), Error> {
     picture.image(&Control::default())?.save("wave.png")?;
     juggler::render_to_file(&scene.at_frame(12.0)?, &Settings::default(), "wave_later.png")?;
 
-    // Another material is an edit of a value. The new picture shares meshes and hierarchies with the old.
+    // Another material is an edit of a value. The new picture shares meshes and hierarchies with
+    // the old.
     let mut polished = scene.clone();
     polished.description.materials.insert("paint".into(), AnyMaterial::from(Conductor::default()).into());
     let picture = picture.after(&scene, &polished, &Settings::default())?;

@@ -23,7 +23,8 @@
 //!
 //! Rendering uses the current rayon thread pool. The crates behind it, in the order of a ray's
 //! journey: [`math`], [`camera`], [`shape`], [`texture`], [`mod@bsdf`], [`material`], [`light`],
-//! [`world`], [`integrator`], [`mod@render`]; and [`scene`], [`imaging`], [`film`]. The folder `examples/` is a course in five steps.
+//! [`world`], [`integrator`], [`mod@render`]; and [`scene`], [`imaging`], [`film`]. The folder
+//! `examples/` is a course in five steps.
 
 pub mod denoise;
 mod error;

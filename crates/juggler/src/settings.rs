@@ -24,7 +24,8 @@ pub enum Limit {
     /// When the relative error of each block of 16 × 16 pixels is at most this: the root mean square over its pixels,
     /// estimated from the picture's own samples (see [`Stop::Noise`]).
     Noise(f32),
-    /// When somebody calls [`Control::finish`](juggler_render::Control::finish), which is to be after some time.
+    /// When somebody calls [`Control::finish`](juggler_render::Control::finish), which is to be
+    /// after some time.
     Time {
         /// How long it is to take.
         seconds: f64,

@@ -37,8 +37,9 @@ pub struct Work {
     pub pixels: Rect,
     /// Which samples of each.
     pub samples: Range<u32>,
-    /// Where the first sample is in the middle of a block of [`BLOCK`](juggler_camera::film::BLOCK): for each pixel, the sum of
-    /// the block's samples before it.
+    /// Where the first sample is in the middle of a block of
+    /// [`BLOCK`](juggler_camera::film::BLOCK): for each pixel, the sum of the block's samples
+    /// before it.
     pub open: Option<Run>,
 }
 
@@ -68,7 +69,8 @@ pub struct Job<'w> {
     pub seed: u64,
     /// What is kept beside radiance.
     pub layers: &'w Layers,
-    /// What the scene is at the frames beside, for [`Layer::Motion`](juggler_camera::layer::Layer::Motion); without it nothing is known of
+    /// What the scene is at the frames beside, for
+    /// [`Layer::Motion`](juggler_camera::layer::Layer::Motion); without it nothing is known of
     /// that.
     pub frames: Option<&'w Arc<Frames>>,
 }

@@ -89,8 +89,9 @@ pub fn noise_so_far(film: &Film, level: f32) -> Option<NoiseSoFar> {
     (needed > 0.0).then(|| NoiseSoFar { noise: worst.sqrt(), fraction: done / needed })
 }
 
-/// The most runs of samples that a tile may hold on its way to the samples `wanted`, each a [`Sum`](juggler_camera::film::Sum) a
-/// pixel: after some rounds the sums of a tile are not yet joined into one.
+/// The most runs of samples that a tile may hold on its way to the samples `wanted`, each a
+/// [`Sum`](juggler_camera::film::Sum) a pixel: after some rounds the sums of a tile are not yet
+/// joined into one.
 pub fn most_runs(wanted: &Range<u32>) -> usize {
     let next = |end: &u32| (*end < wanted.end).then(|| short_round_after(*end).min(wanted.end));
     let ends = std::iter::successors(Some(wanted.start), next).skip(1);

@@ -1,4 +1,5 @@
-//! Files that a scene holds in memory: the same pictures and fingerprints as files on the disk have.
+//! Files that a scene holds in memory: the same pictures and fingerprints as files on the disk
+//! have.
 
 use juggler::material::Diffuse;
 use juggler::prelude::*;

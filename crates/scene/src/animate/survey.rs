@@ -71,7 +71,8 @@ fn parts(tree: &Node) -> impl Iterator<Item = &Node> {
     tree.members().filter(move |(key, _)| moves(key)).map(|(_, member)| &member.node)
 }
 
-/// Whether a value may differ from scene to scene: it holds a value form, or an expression that uses a name other than
+/// Whether a value may differ from scene to scene: it holds a value form, or an expression that
+/// uses a name other than
 /// `pi`.
 pub(crate) fn has_expressions(node: &Node, programs: &Programs) -> bool {
     match &node.value {
@@ -84,8 +85,8 @@ pub(crate) fn has_expressions(node: &Node, programs: &Programs) -> bool {
     }
 }
 
-/// Whether an expression uses a name that satisfies a predicate. An expression that is no program, because of an error,
-/// counts as one that does.
+/// Whether an expression uses a name that satisfies a predicate. An expression that is no program,
+/// because of an error, counts as one that does.
 fn uses(expression: &str, programs: &Programs, is_wanted: impl Fn(&str) -> bool) -> bool {
     let program = programs.parse(expression).ok();
     program.is_none_or(|program| program.inputs().iter().any(|input| is_wanted(&input.name)))

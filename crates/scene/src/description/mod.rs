@@ -1,5 +1,6 @@
-//! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder all come
-//! from here and from the families of kinds (`juggler_shape`, `juggler_material`, `juggler_light`, ...).
+//! What stands in a scene file, as types: JSON, its schema, its documentation and the Rust builder
+//! all come from here and from the families of kinds (`juggler_shape`, `juggler_material`,
+//! `juggler_light`, ...).
 
 use crate::animate::Programs;
 use crate::item::Item;

@@ -232,8 +232,8 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// Tree of the main file, if the scene includes no other file. Elements of included lists come before
-/// those of the main file, so scenes of several files are read as trees.
+/// Tree of the main file, if the scene includes no other file. Elements of included lists come
+/// before those of the main file, so scenes of several files are read as trees.
 fn alone(text: &str) -> Option<(Node, Vec<Refused>)> {
     let parsed = parse_part(text, 0..text.len(), FileId::MAIN, &Trail::Root).ok()?;
     parsed.0.get("include").is_none().then_some(parsed)

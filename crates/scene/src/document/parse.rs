@@ -1,8 +1,8 @@
 //! Parser from text to tree. Comments and trailing commas are the only liberties.
 //!
 //! The parser builds nodes directly from the text. `jsonc-parser` decodes strings with escapes, and
-//! explains the first mistake of a text that this parser refuses; building nodes from its syntax tree
-//! took more than twice the time.
+//! explains the first mistake of a text that this parser refuses; building nodes from its syntax
+//! tree took more than twice the time.
 
 use super::guard::{self, Refused};
 use super::members::Members;
