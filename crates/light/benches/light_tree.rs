@@ -1,5 +1,5 @@
 //! Time of light trees: nanoseconds a pick, a chance, and a light that is built into one.
-//! `cargo bench -p juggler-tracer --bench light_tree`.
+//! `cargo bench -p juggler-light --bench light_tree`.
 #![allow(clippy::print_stdout)]
 
 use juggler_light::emitter::{LightBounds, LightTree};

@@ -1,5 +1,5 @@
 //! The tables of [`InterfaceLoss`] against integrals of single scattering; with `JUGGLER_BLESS=1` they are made anew:
-//! `JUGGLER_BLESS=1 cargo test -p juggler-tracer interface_tables`.
+//! `JUGGLER_BLESS=1 cargo test -p juggler-bsdf interface_tables`.
 //!
 //! An entry is an integral over visible normals for its direction. The entries of each zone are then scaled so that the
 //! integral of what is interpolated between them is that of the loss itself, over the whole zone.

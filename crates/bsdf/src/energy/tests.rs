@@ -1,5 +1,5 @@
 //! The tables against integrals; with `JUGGLER_BLESS=1` they are made anew:
-//! `JUGGLER_BLESS=1 cargo test -p juggler-tracer tables_are_what_lobes_integrate_to`.
+//! `JUGGLER_BLESS=1 cargo test -p juggler-bsdf tables_are_what_lobes_integrate_to`.
 
 use super::*;
 use crate::ScatteringLobe;
