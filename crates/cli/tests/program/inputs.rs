@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use crate::harness::Folder;
+use juggler::memory::PROGRAM;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::process::Command;
@@ -107,13 +108,12 @@ fn comparing_and_merging_keep_to_a_budget() {
     // FLIP takes most: without room for it the rest is told all the same.
     folder.good("render ball.json --size 400x300 --samples 1 -o a.pfm");
     folder.good("render ball.json --size 400x300 --samples 1 --seed 2 -o b.pfm");
-    let program = if cfg!(debug_assertions) { 32 } else { 20 };
-    let line = format!("compare a.pfm b.pfm --tolerance 10 --max-memory {}M", program + 24);
+    let line = format!("compare a.pfm b.pfm --tolerance 10 --max-memory {}", PROGRAM + (22 << 20));
     assert!(folder.good(&line).stdout.contains("FLIP    not measured"), "{line}");
     assert!(folder.bad(&format!("{line} --difference d.png"), 2).contains("comparing the pictures needs about"));
     assert!(
         folder
-            .good(&format!("compare a.pfm b.pfm --tolerance 10 --max-memory {}M", program + 60))
+            .good(&format!("compare a.pfm b.pfm --tolerance 10 --max-memory {}", PROGRAM + (58 << 20)))
             .stdout
             .contains("(HDR)")
     );

@@ -186,7 +186,7 @@ fn meshes_of_all_formats_are_foretold() {
 #[test]
 fn a_text_too_large_is_refused_before_it_is_read_as_a_scene() {
     let folder = Folder::new();
-    let text = format!(r#"{{"version": 1, "objects": [{}]}}"#, "0,".repeat(200_000));
+    let text = format!(r#"{{"version": 1, "objects": [{}]}}"#, "0,".repeat(300_000));
     fs::write(folder.path("many.json"), text).unwrap();
     let message = folder.bad(&format!("render many.json -o a.png --max-memory {}", budget(32)), 2);
     assert!(message.contains("the scene `many.json` needs about"), "{message}");
