@@ -104,8 +104,9 @@ env -u DISPLAY -u WAYLAND_DISPLAY -u WAYLAND_SOCKET "$juggler" view one-sphere 2
   fail "without a display: status $status, $(cat "$work/none")"
 say "without a display: an error and status 3"
 
+# Without `-noreset` the display starts anew when its last client leaves it, and refuses others meanwhile.
 mkfifo "$work/display"
-Xvfb -displayfd 7 -screen 0 1280x800x24 -nolisten tcp 7>"$work/display" 2>/dev/null &
+Xvfb -displayfd 7 -screen 0 1280x800x24 -nolisten tcp -noreset 7>"$work/display" 2>/dev/null &
 server=$!
 read -r number < "$work/display"
 export DISPLAY=:$number
