@@ -1,7 +1,9 @@
 //! Items of a scene: objects, lights, materials, textures, cameras and settings, each with its animation template,
 //! its source location and its validation state.
 
+use crate::animate::Programs;
 use crate::document::{Node, Place};
+use crate::motion::TransformSetters;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
@@ -41,6 +43,16 @@ pub(crate) struct Template {
     pub node: Node,
     /// Whether the value changes with time; otherwise it depends on variables and paths only.
     pub depends_on_time: bool,
+    /// Setters that replace reading the JSON at another time, where the template allows that.
+    pub setters: Option<TransformSetters>,
+}
+
+impl Template {
+    /// Creates the template of an item with this JSON.
+    pub fn new(node: Node, depends_on_time: bool, programs: &Programs) -> Self {
+        let setters = depends_on_time.then(|| TransformSetters::of(&node, programs)).flatten();
+        Self { node, depends_on_time, setters }
+    }
 }
 
 impl<T> Item<T> {

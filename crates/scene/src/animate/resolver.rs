@@ -7,6 +7,7 @@ use crate::document::{Node, Sources, Value};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::validate;
+use juggler_expression::Program;
 
 /// Works out values for one frame.
 pub(crate) struct Resolver<'s> {
@@ -31,6 +32,12 @@ impl<'s> Resolver<'s> {
     /// The value at the frame; `at` is where messages say that it stands.
     pub fn value(&mut self, node: &Node, at: &Trail<'_>) -> Node {
         self.walk.node(node, at).unwrap_or_else(|| node.clone())
+    }
+
+    /// Value of a compiled expression, as JSON would hold it; `None` for an expression that is wrong or has no value.
+    pub fn number(&mut self, program: &Program) -> Option<f64> {
+        // JSON has no negative zero among whole numbers.
+        self.walk.number(program).map(|value| value + 0.0)
     }
 
     /// All that was wrong.

@@ -8,7 +8,7 @@ use crate::document::{Members, Node, Place, Sources, Value};
 use crate::path::Trail;
 use crate::report::Finding;
 use crate::validate;
-use juggler_expression::{ExpressionError, Names, PointEvaluator, Quantity};
+use juggler_expression::{ExpressionError, Names, PointEvaluator, Program, Quantity};
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
@@ -148,6 +148,11 @@ impl Walk<'_> {
                 Quantity::Unknown
             }
         }
+    }
+
+    /// Value of a compiled expression; `None` for an expression that is wrong or has no value.
+    pub fn number(&mut self, program: &Program) -> Option<f64> {
+        self.evaluator.value(program, &self.names).ok().flatten()
     }
 
     /// What to do when an expression uses a variable that is only defined below.

@@ -154,7 +154,7 @@ impl Attaching<'_> {
             self.taken.extend(take_texture(&mut node, rest, name).map(|texture| (name, texture)));
         }
         let depends_on_time = self.changing.holds(&node);
-        has_expressions(&node, self.programs).then(|| Arc::new(Template { node, depends_on_time }))
+        has_expressions(&node, self.programs).then(|| Arc::new(Template::new(node, depends_on_time, self.programs)))
     }
 
     /// Attaches textures, which are written in the scene's `textures` or inline.
@@ -190,7 +190,7 @@ impl Attaching<'_> {
             [Step::Key(key)] if key == "lights" => Some(FormValue::Lights(scene.lights.clone())),
             _ => scene.background_light_group.clone().map(FormValue::Label),
         };
-        let template = Template { node: node.clone(), depends_on_time: self.changing.holds(node) };
+        let template = Template::new(node.clone(), self.changing.holds(node), self.programs);
         scene.list_forms.extend(given.map(|given| ListForm { path, template: Arc::new(template), given }));
     }
 }

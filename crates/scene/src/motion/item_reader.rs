@@ -22,6 +22,8 @@ pub(crate) struct ItemSource {
     pub template: Arc<Template>,
     /// Whether the item keeps its template.
     pub moves: bool,
+    /// Whether the scene holds the item's value at another time, so that only what animates need be set.
+    pub value_is_known: bool,
     pub place: Option<Place>,
 }
 
@@ -29,7 +31,8 @@ impl ItemSource {
     /// JSON of an item at a path that has not been read yet.
     pub fn unread(path: Path, node: Node) -> Self {
         let place = node.place;
-        Self { path, template: Arc::new(Template { node, depends_on_time: true }), moves: false, place }
+        let template = Arc::new(Template { node, depends_on_time: true, setters: None });
+        Self { path, template, moves: false, value_is_known: false, place }
     }
 }
 
@@ -48,6 +51,8 @@ enum Kind {
     /// Number of lights in the list.
     Lights(usize),
     Label,
+    /// Object whose numbers were set.
+    SetObject,
 }
 
 impl Kind {
@@ -82,7 +87,7 @@ pub(crate) fn read_items<'w>(
     frame: f64,
     wanted: &'w [ItemSource],
 ) -> (Option<ItemValues<'w>>, Vec<Finding>) {
-    let mut reader = ItemReader::new(Resolver::new(head, sources, &scene.programs, frame), NameScope::Scene(scene));
+    let mut reader = ItemReader::new(Resolver::new(head, sources, &scene.programs, frame), scene);
     wanted.iter().for_each(|wanted| reader.add(wanted));
     reader.finish()
 }
@@ -106,7 +111,7 @@ pub(crate) fn replace_items(
 
 struct ItemReader<'s, 'w> {
     resolver: Resolver<'s>,
-    known: NameScope<'s>,
+    scene: &'s Description,
     findings: Vec<Finding>,
     /// Findings for items without a value, which other findings explain if there are any.
     unresolved: Vec<Finding>,
@@ -114,21 +119,42 @@ struct ItemReader<'s, 'w> {
     read: Vec<(&'w ItemSource, Kind, Plain)>,
     /// Inline textures by name.
     textures: Vec<(String, Plain)>,
+    /// Objects whose numbers were set, in order.
+    set: Vec<Item<Object>>,
 }
 
 impl<'s, 'w> ItemReader<'s, 'w> {
-    fn new(resolver: Resolver<'s>, known: NameScope<'s>) -> Self {
-        Self { resolver, known, findings: Vec::new(), unresolved: Vec::new(), read: Vec::new(), textures: Vec::new() }
+    fn new(resolver: Resolver<'s>, scene: &'s Description) -> Self {
+        Self {
+            resolver,
+            scene,
+            findings: Vec::new(),
+            unresolved: Vec::new(),
+            read: Vec::new(),
+            textures: Vec::new(),
+            set: Vec::new(),
+        }
+    }
+
+    /// The object with its animated numbers set, if that is all there is to do.
+    fn set(&mut self, wanted: &ItemSource) -> Option<Item<Object>> {
+        let setters = wanted.template.setters.as_ref().filter(|_| wanted.value_is_known)?;
+        setters.apply(self.scene.object_at(&wanted.path)?, &mut self.resolver)
     }
 
     /// Evaluates and validates an item.
     fn add(&mut self, wanted: &'w ItemSource) {
+        if let Some(object) = self.set(wanted) {
+            self.set.push(object);
+            self.read.push((wanted, Kind::SetObject, Plain::Null));
+            return;
+        }
         let Some(kind) = Kind::of(&wanted.path) else { return };
         let stands = written_at(&wanted.path);
         let before = self.findings.len();
         let checked = with_trail(stands.steps(), &Trail::Root, &mut |at: &Trail<'_>| {
             let node = self.resolver.value(&wanted.template.node, at);
-            validate::item(&node, &wanted.path, at, self.known)
+            validate::item(&node, &wanted.path, at, NameScope::Scene(self.scene))
         });
         self.textures.extend(checked.textures);
         self.findings.extend(checked.findings);
@@ -159,7 +185,7 @@ impl<'s, 'w> ItemReader<'s, 'w> {
         let read: Vec<(&'w ItemSource, Kind)> = self.read.iter().map(|(wanted, kind, _)| (*wanted, *kind)).collect();
         let json = combine(self.read, self.textures);
         match Description::deserialize(&json) {
-            Ok(scene) => (Some(split(scene, &read)), findings),
+            Ok(scene) => (Some(split(scene, &read, self.set)), findings),
             // The schema allows what the types refuse: only a slip of ours can bring us here.
             Err(error) => {
                 findings.push(Finding::error(error.to_string()));
@@ -199,6 +225,7 @@ fn combine(read: Vec<(&ItemSource, Kind, Plain)>, textures: Vec<(String, Plain)>
             Kind::Tone => scene.push(("tone".into(), json)),
             Kind::Background => scene.push(("background".into(), json)),
             Kind::Label => scene.push(("background_light_group".into(), json)),
+            Kind::SetObject => {}
         }
     }
     named.extend(textures.into_iter().map(|(name, texture)| (name.into(), texture)));
@@ -211,11 +238,12 @@ fn combine(read: Vec<(&ItemSource, Kind, Plain)>, textures: Vec<(String, Plain)>
 }
 
 /// Splits the deserialized scene of a batch into items with their paths.
-fn split<'w>(scene: Description, read: &[(&'w ItemSource, Kind)]) -> ItemValues<'w> {
+fn split<'w>(scene: Description, read: &[(&'w ItemSource, Kind)], set: Vec<Item<Object>>) -> ItemValues<'w> {
     let Description { render, tone, mut background, background_light_group, cameras, textures, .. } = scene;
     let (mut cameras, mut textures) = (cameras.into_inner(), textures.into_inner());
     let (mut materials, mut groups) = (scene.materials.into_inner(), scene.groups.into_inner());
     let (mut lights, mut objects) = (scene.lights.into_inner().into_iter(), scene.objects.into_inner().into_iter());
+    let mut set = set.into_iter();
     let mut parts = Vec::with_capacity(read.len());
     for (i, (wanted, kind)) in read.iter().enumerate() {
         let key = || i.to_string();
@@ -234,6 +262,7 @@ fn split<'w>(scene: Description, read: &[(&'w ItemSource, Kind)]) -> ItemValues<
             Kind::Object => objects.next().map(|item| ItemValue::Object(wanted.object(item))),
             Kind::Objects => groups.swap_remove(&key()).map(|list| ItemValue::Objects(wanted.list(list))),
             Kind::Label => background_light_group.clone().map(ItemValue::Label),
+            Kind::SetObject => set.next().map(ItemValue::Object),
         };
         parts.extend(part.map(|part| (Cow::Borrowed(&wanted.path), part)));
     }

@@ -4,7 +4,8 @@
 //!
 //! 1. [`attach`] attaches templates and source locations after a document was read; [`lists`] reads long lists.
 //! 2. [`settle`] merges edits by programs into templates.
-//! 3. [`item_reader`] evaluates templates at a frame; [`item_value`] is what it reads.
+//! 3. [`item_reader`] evaluates templates at a frame; [`item_value`] is what it reads. [`setters`] replace reading for
+//!    numbers of transforms.
 //! 4. [`tracks`] samples animated items at even times while the shutter is open.
 //! 5. [`write`](mod@write) writes a scene with its animation as JSON.
 
@@ -12,6 +13,7 @@ mod attach;
 mod item_reader;
 mod item_value;
 mod lists;
+mod setters;
 mod settle;
 mod tracks;
 mod write;
@@ -22,6 +24,7 @@ use item_reader::ItemValues;
 pub(crate) use item_reader::{ItemSource, read_items, replace_items};
 pub(crate) use item_value::ItemValue;
 pub(crate) use lists::read_list;
+pub(crate) use setters::TransformSetters;
 pub(crate) use settle::edits_merged;
 pub use tracks::{ListTracks, ObjectTrack, Tracks};
 pub(crate) use write::{head, node, object_node, written};
@@ -216,6 +219,24 @@ impl Description {
             [Step::Key(section), rest @ ..] if section == "objects" => list_among(&mut self.objects, rest),
             [Step::Key(section), Step::Key(name), rest @ ..] if section == "groups" => {
                 list_among(self.groups.get_mut(name)?, rest)
+            }
+            _ => None,
+        }
+    }
+
+    /// Object at a path.
+    pub(crate) fn object_at(&self, path: &Path) -> Option<&Item<Object>> {
+        fn among<'s>(objects: &'s [Item<Object>], steps: &[Step]) -> Option<&'s Item<Object>> {
+            match steps {
+                [Step::Index(i)] => objects.get(*i),
+                [Step::Index(i), Step::Key(_), rest @ ..] => among(objects.get(*i)?.inner(), rest),
+                _ => None,
+            }
+        }
+        match path.steps() {
+            [Step::Key(section), rest @ ..] if section == "objects" => among(&self.objects, rest),
+            [Step::Key(section), Step::Key(name), rest @ ..] if section == "groups" => {
+                among(self.groups.get(name)?, rest)
             }
             _ => None,
         }

@@ -29,7 +29,10 @@ pub(crate) fn edits_merged<'s>(scene: &'s Description, sources: &Sources, frame:
         let merged = before(scene, &head, sources, frame, &path, &template)
             .map(|before| merged(&template.node, &before, &after))
             .filter(|node| has_expressions(node, &scene.programs));
-        let template = merged.map(|node| Arc::new(Template { depends_on_time: changing.holds(&node), node }));
+        let template = merged.map(|node| {
+            let depends_on_time = changing.holds(&node);
+            Arc::new(Template::new(node, depends_on_time, &scene.programs))
+        });
         if let Some(item) = edits_merged.item_mut(&path) {
             item.set_template(template);
         }
@@ -47,7 +50,13 @@ fn before(
     path: &Path,
     template: &Arc<Template>,
 ) -> Option<serde_json::Value> {
-    let wanted = ItemSource { path: path.clone(), template: Arc::clone(template), moves: true, place: None };
+    let wanted = ItemSource {
+        path: path.clone(),
+        template: Arc::clone(template),
+        moves: true,
+        value_is_known: false,
+        place: None,
+    };
     let (_, part) = read_items(scene, head, sources, frame, &[wanted]).0?.into_iter().next()?;
     Some(part.json())
 }

@@ -167,9 +167,10 @@ fn moving(scene: &Description) -> Vec<ItemSource> {
 }
 
 impl Description {
-    /// Sources of all items and lists that depend on time.
+    /// Sources of all items and lists that depend on time, to be read at other times of the same scene.
     pub(crate) fn time_dependent(&self) -> Vec<ItemSource> {
-        self.templates(|template| template.depends_on_time)
+        let sources = self.templates(|template| template.depends_on_time).into_iter();
+        sources.map(|source| ItemSource { value_is_known: true, ..source }).collect()
     }
 
     /// Sources of all items and lists whose templates satisfy a predicate.
@@ -181,6 +182,7 @@ impl Description {
                     path: at.into(),
                     template: Arc::clone(template),
                     moves: true,
+                    value_is_known: false,
                     place: item.place(),
                 });
             }
@@ -190,6 +192,7 @@ impl Description {
             path: form.path.clone(),
             template: Arc::clone(&form.template),
             moves: true,
+            value_is_known: false,
             place: form.template.node.place,
         }));
         found
@@ -201,12 +204,12 @@ impl Description {
         let mut changing = TimeDependence::of(head, &programs);
         for form in self.list_forms.iter_mut() {
             let depends_on_time = changing.holds(&form.template.node);
-            form.template = Arc::new(Template { node: form.template.node.clone(), depends_on_time });
+            form.template = Arc::new(Template::new(form.template.node.clone(), depends_on_time, &programs));
         }
         for ItemSource { path, template, .. } in self.templates(|_| true) {
             let depends_on_time = changing.holds(&template.node);
             if depends_on_time != template.depends_on_time {
-                let template = Arc::new(Template { node: template.node.clone(), depends_on_time });
+                let template = Arc::new(Template::new(template.node.clone(), depends_on_time, &programs));
                 if let Some(item) = self.item_mut(&path) {
                     item.set_template(Some(template));
                 }

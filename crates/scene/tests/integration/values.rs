@@ -302,6 +302,50 @@ fn mistakes_in_long_lists_have_their_places() {
     }
 }
 
+/// Numbers of transforms are set in objects that are known already; reading the objects' JSON gives the same bits.
+#[test]
+fn numbers_of_transforms_that_move_are_those_that_are_read() {
+    let steps = [
+        r#"{"translate": ["=frame / 3", 1, "=-sin(frame) * wide"]}"#,
+        r#"{"rotate": {"axis": [0, "=1 + frame / 7", 0.5], "degrees": "=frame * 10.1"}}"#,
+        r#"{"scale": "=1 + frame / 9"}"#,
+        r#"{"scale": [1, "=2 + frame", "=0.1 * wide"]}"#,
+        r#"{"orient": [0, "=sin(frame)", 0, "=cos(frame)"]}"#,
+        r#"{"look_at": {"from": ["=frame", 1, 2], "to": [0, "=-frame", 0], "up": [0, 1, "=frame / 8"], "forward": ["=0.1 + frame", 0, 1]}}"#,
+        r#"{"matrix": [1, 0, 0, "=frame", 0, "=1 + frame", 0, 0, 0, 0, 1, "=0 * -frame"]}"#,
+        // These are read: a vector, and a track.
+        r#"{"translate": "=place"}"#,
+        r#"{"translate": {"animate": {"keys": [[0, [0, 0, 0]], [3, [1, "=frame", 2]]]}}}"#,
+    ];
+    let object = |transform: String| format!(r#"{{"shape": "sphere", "transform": {transform}}}"#);
+    let mut objects: Vec<String> = steps.iter().map(|step| object((*step).to_owned())).collect();
+    objects.push(object(format!("[{}]", steps.join(", "))));
+    objects.push(format!(r#"{{"objects": [{}, {{"shape": "disk"}}]}}"#, objects[0]));
+    let text = format!(
+        r#"{{"version": 1, "variables": {{"wide": 2, "place": [1, "frame * 2", 3]}}, "groups": {{"g": [{}]}},
+            "render": {{"shutter": [0, 0.5]}}, "objects": [{}]}}"#,
+        objects[1],
+        objects.join(", ")
+    );
+    let scene = Scene::from_json(text, "moving.json").unwrap();
+    for frame in [0.0, 1.0, 2.5, -7.25] {
+        let there = scene.at_frame(frame).unwrap();
+        // Another variable makes everything that moves be read again.
+        let read = there.with_value("/variables/other", json!(1)).unwrap();
+        assert_eq!(there.description.objects, read.description.objects, "at {frame}");
+        assert_eq!(there.description.groups, read.description.groups, "at {frame}");
+        assert_eq!(there.still().fingerprint(), read.still().fingerprint());
+    }
+    let [grown, still] = [7, 8].map(|i| scene.at_frame(1.0).unwrap().description.objects[i].transform.clone());
+    assert_eq!(grown, [TransformStep::Translate(Vec3::new(1.0, 2.0, 3.0))]);
+    assert_ne!(still, grown);
+    // What cannot be a number is told as it is when it is read.
+    let text =
+        r#"{"version": 1, "objects": [{"shape": "sphere", "transform": {"translate": ["=1e39 * frame", 0, 0]}}]}"#;
+    let error = Scene::from_json(text, "huge.json").unwrap().at_frame(1.0).unwrap_err().to_string();
+    assert!(error.contains("objects[0].transform"), "{error}");
+}
+
 /// What does not move is shared by all frames, and not looked at while the shutter is open.
 #[test]
 fn only_what_moves_is_read_again() {

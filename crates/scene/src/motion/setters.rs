@@ -1,0 +1,130 @@
+//! Expressions that stand for numbers of an object's transform. Most motion is of this kind; at another time the numbers are
+//! stored in a copy of the object, so that its JSON need not be read again.
+
+use crate::animate::{Programs, Resolver, has_expressions, is_form};
+use crate::description::{Axes, Object, TransformStep};
+use crate::document::{Node, Value};
+use crate::item::Item;
+use crate::path::Step;
+use juggler_expression::Program;
+use juggler_math::Vec3;
+use std::sync::Arc;
+
+/// Setters of the numbers that expressions animate in an object's transform.
+#[derive(Debug)]
+pub(crate) struct TransformSetters(Vec<NumberSetter>);
+
+/// Setter of one number.
+#[derive(Debug)]
+struct NumberSetter {
+    program: Arc<Program>,
+    /// Index of the transform step.
+    step: usize,
+    /// Path of the number in the step, which begins with the step's name.
+    path: Vec<Step>,
+}
+
+impl TransformSetters {
+    /// Returns setters for an object's JSON, or `None` if the object has expressions or value forms elsewhere than in
+    /// single numbers of its transform.
+    pub fn of(object: &Node, programs: &Programs) -> Option<Self> {
+        let Value::Object(members) = &object.value else { return None };
+        let mut setters = Vec::new();
+        for (key, member) in members.iter() {
+            match &member.node.value {
+                Value::Array(steps) if key == "transform" => {
+                    for (i, step) in steps.iter().enumerate() {
+                        collect(step, i, &mut Vec::new(), programs, &mut setters)?;
+                    }
+                }
+                _ if key == "transform" => collect(&member.node, 0, &mut Vec::new(), programs, &mut setters)?,
+                _ if has_expressions(&member.node, programs) => return None,
+                _ => {}
+            }
+        }
+        (!setters.is_empty()).then_some(Self(setters))
+    }
+
+    /// Returns the object at the resolver's time, or `None` if a number has no value or the object has no place for it.
+    pub fn apply(&self, object: &Item<Object>, resolver: &mut Resolver<'_>) -> Option<Item<Object>> {
+        let mut object = object.clone();
+        let transform = &mut object.value_mut_unmarked().transform;
+        for setter in &self.0 {
+            let value = resolver.number(&setter.program)? as f32;
+            *number_mut(transform.get_mut(setter.step)?, &setter.path)? = Some(value).filter(|v| v.is_finite())?;
+        }
+        Some(object)
+    }
+}
+
+/// Collects the expressions of a transform step; `None` if the step has a value form.
+fn collect(
+    node: &Node,
+    step: usize,
+    path: &mut Vec<Step>,
+    programs: &Programs,
+    setters: &mut Vec<NumberSetter>,
+) -> Option<()> {
+    match &node.value {
+        Value::String(text) => {
+            let program = programs.parse(text.strip_prefix('=')?).ok()?;
+            setters.push(NumberSetter { program, step, path: path.clone() });
+        }
+        Value::Array(elements) => {
+            for (i, element) in elements.iter().enumerate() {
+                path.push(Step::Index(i));
+                collect(element, step, path, programs, setters)?;
+                path.pop();
+            }
+        }
+        Value::Object(members) if is_form(members) => return None,
+        Value::Object(members) => {
+            for (key, member) in members.iter() {
+                path.push(Step::Key(key.clone()));
+                collect(&member.node, step, path, programs, setters)?;
+                path.pop();
+            }
+        }
+        _ => {}
+    }
+    Some(())
+}
+
+/// Number at a path in a transform step.
+fn number_mut<'t>(step: &'t mut TransformStep, path: &[Step]) -> Option<&'t mut f32> {
+    let (_, path) = path.split_first()?;
+    match step {
+        TransformStep::Translate(by) => component_mut(by, path),
+        TransformStep::Rotate(rotate) => match path {
+            [Step::Key(key)] if key == "degrees" => Some(&mut rotate.degrees),
+            [Step::Key(key), rest @ ..] if key == "axis" => component_mut(&mut rotate.axis, rest),
+            _ => None,
+        },
+        TransformStep::Scale(Axes::All(factor)) => path.is_empty().then_some(factor),
+        TransformStep::Scale(Axes::Each(factors)) => component_mut(factors, path),
+        TransformStep::Orient(quaternion) => element_mut(quaternion, path),
+        TransformStep::LookAt(look_at) => {
+            let (Step::Key(key), rest) = path.split_first()? else { return None };
+            let vector = match key.as_str() {
+                "from" => &mut look_at.from,
+                "to" => &mut look_at.to,
+                "up" => &mut look_at.up,
+                "forward" => &mut look_at.forward,
+                _ => return None,
+            };
+            component_mut(vector, rest)
+        }
+        TransformStep::Matrix(numbers) => element_mut(numbers, path),
+    }
+}
+
+fn component_mut<'v>(vector: &'v mut Vec3, path: &[Step]) -> Option<&'v mut f32> {
+    element_mut(vector.as_mut(), path)
+}
+
+fn element_mut<'n>(numbers: &'n mut [f32], path: &[Step]) -> Option<&'n mut f32> {
+    match path {
+        [Step::Index(i)] => numbers.get_mut(*i),
+        _ => None,
+    }
+}
