@@ -105,6 +105,7 @@ const OPENERS: &[&str] = &[
     "fuzz/src/bombs/run.rs",
     "fuzz/src/seeds.rs",
     "imaging/src/regular.rs",
+    "juggler/benches/edits.rs",
 ];
 
 /// Whoever opens a named pipe waits for another program, forever: readers open their input by `imaging::regular::open`.
