@@ -185,8 +185,10 @@ impl Description {
             ("textures", [Step::Key(name), ..]) => Some((any(self.textures.get(name)?), 2)),
             ("materials", [Step::Key(name), ..]) => Some((any(self.materials.get(name)?), 2)),
             ("lights", [Step::Index(i), ..]) => Some((any(self.lights.get(*i)?), 2)),
-            ("objects", rest) => object_of(&self.objects, rest, 1),
-            ("groups", [Step::Key(name), rest @ ..]) => object_of(self.groups.get(name)?, rest, 2),
+            ("objects", rest) => object_of(&self.objects, rest, 1).map(|(object, depth)| (any(object), depth)),
+            ("groups", [Step::Key(name), rest @ ..]) => {
+                object_of(self.groups.get(name)?, rest, 2).map(|(object, depth)| (any(object), depth))
+            }
             _ => None,
         }
     }
@@ -226,20 +228,14 @@ impl Description {
 
     /// Object at a path.
     pub(crate) fn object_at(&self, path: &Path) -> Option<&Item<Object>> {
-        fn among<'s>(objects: &'s [Item<Object>], steps: &[Step]) -> Option<&'s Item<Object>> {
-            match steps {
-                [Step::Index(i)] => objects.get(*i),
-                [Step::Index(i), Step::Key(_), rest @ ..] => among(objects.get(*i)?.inner(), rest),
-                _ => None,
-            }
-        }
-        match path.steps() {
-            [Step::Key(section), rest @ ..] if section == "objects" => among(&self.objects, rest),
+        let (object, depth) = match path.steps() {
+            [Step::Key(section), rest @ ..] if section == "objects" => object_of(&self.objects, rest, 1),
             [Step::Key(section), Step::Key(name), rest @ ..] if section == "groups" => {
-                among(self.groups.get(name)?, rest)
+                object_of(self.groups.get(name)?, rest, 2)
             }
             _ => None,
-        }
+        }?;
+        (depth == path.steps().len()).then_some(object)
     }
 
     /// Whether both scenes share all animated items (by pointer) and have the same shutter times.
@@ -286,7 +282,9 @@ fn list_among<'s>(objects: &'s mut Objects, steps: &[Step]) -> Option<(&'s mut O
     }
 }
 
-fn object_of<'s>(objects: &'s [Item<Object>], steps: &[Step], depth: usize) -> Option<(&'s dyn AnyItem, usize)> {
+/// Innermost object on a path that begins in a list, and the number of steps from the root to the
+/// object; `depth` steps lead to the list.
+fn object_of<'s>(objects: &'s [Item<Object>], steps: &[Step], depth: usize) -> Option<(&'s Item<Object>, usize)> {
     let [Step::Index(i), rest @ ..] = steps else { return None };
     let object = objects.get(*i)?;
     let inner = match rest {

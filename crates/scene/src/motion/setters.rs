@@ -1,11 +1,13 @@
-//! Expressions that stand for numbers of an object's transform. Most motion is of this kind; at another time the numbers are
-//! stored in a copy of the object, so that its JSON need not be read again.
+//! Setters for numbers of an object's transform that expressions animate. Most motion is of this
+//! kind; at another time the setters store the numbers in a copy of the object, whose JSON is not
+//! read again.
 
-use crate::animate::{Programs, Resolver, has_expressions, is_form};
+use super::settle::sources_in;
+use crate::animate::{Programs, Resolver};
 use crate::description::{Axes, Object, TransformStep};
-use crate::document::{Node, Value};
+use crate::document::Node;
 use crate::item::Item;
-use crate::path::Step;
+use crate::path::{Path, Step};
 use juggler_expression::Program;
 use juggler_math::Vec3;
 use std::sync::Arc;
@@ -25,27 +27,26 @@ struct NumberSetter {
 }
 
 impl TransformSetters {
-    /// Returns setters for an object's JSON, or `None` if the object has expressions or value forms elsewhere than in
-    /// single numbers of its transform.
+    /// Returns setters for an object's JSON, or `None` if the object has expressions or value forms
+    /// elsewhere than in single numbers of its transform.
     pub fn of(object: &Node, programs: &Programs) -> Option<Self> {
-        let Value::Object(members) = &object.value else { return None };
-        let mut setters = Vec::new();
-        for (key, member) in members.iter() {
-            match &member.node.value {
-                Value::Array(steps) if key == "transform" => {
-                    for (i, step) in steps.iter().enumerate() {
-                        collect(step, i, &mut Vec::new(), programs, &mut setters)?;
-                    }
-                }
-                _ if key == "transform" => collect(&member.node, 0, &mut Vec::new(), programs, &mut setters)?,
-                _ if has_expressions(&member.node, programs) => return None,
-                _ => {}
-            }
-        }
-        (!setters.is_empty()).then_some(Self(setters))
+        let mut sources = Vec::new();
+        sources_in(object, &mut Path::root(), &mut sources);
+        let setter = |(path, source): (Path, &Node)| {
+            let (step, path) = match path.steps() {
+                [Step::Key(key), Step::Index(i), rest @ ..] if key == "transform" => (*i, rest.to_vec()),
+                [Step::Key(key), rest @ ..] if key == "transform" => (0, rest.to_vec()),
+                _ => return None,
+            };
+            let program = programs.parse(source.as_str()?.strip_prefix('=')?).ok()?;
+            Some(NumberSetter { program, step, path })
+        };
+        let setters: Option<Vec<NumberSetter>> = sources.into_iter().map(setter).collect();
+        setters.filter(|setters| !setters.is_empty()).map(Self)
     }
 
-    /// Returns the object at the resolver's time, or `None` if a number has no value or the object has no place for it.
+    /// Returns the object at the resolver's time, or `None` if a number has no value or the object
+    /// has no place for it.
     pub fn apply(&self, object: &Item<Object>, resolver: &mut Resolver<'_>) -> Option<Item<Object>> {
         let mut object = object.clone();
         let transform = &mut object.value_mut_unmarked().transform;
@@ -55,39 +56,6 @@ impl TransformSetters {
         }
         Some(object)
     }
-}
-
-/// Collects the expressions of a transform step; `None` if the step has a value form.
-fn collect(
-    node: &Node,
-    step: usize,
-    path: &mut Vec<Step>,
-    programs: &Programs,
-    setters: &mut Vec<NumberSetter>,
-) -> Option<()> {
-    match &node.value {
-        Value::String(text) => {
-            let program = programs.parse(text.strip_prefix('=')?).ok()?;
-            setters.push(NumberSetter { program, step, path: path.clone() });
-        }
-        Value::Array(elements) => {
-            for (i, element) in elements.iter().enumerate() {
-                path.push(Step::Index(i));
-                collect(element, step, path, programs, setters)?;
-                path.pop();
-            }
-        }
-        Value::Object(members) if is_form(members) => return None,
-        Value::Object(members) => {
-            for (key, member) in members.iter() {
-                path.push(Step::Key(key.clone()));
-                collect(&member.node, step, path, programs, setters)?;
-                path.pop();
-            }
-        }
-        _ => {}
-    }
-    Some(())
 }
 
 /// Number at a path in a transform step.

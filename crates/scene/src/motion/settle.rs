@@ -76,7 +76,7 @@ fn merged(template: &Node, before: &serde_json::Value, after: &serde_json::Value
 }
 
 /// Collects the outermost expressions and value forms of a template with their paths.
-fn sources_in<'n>(node: &'n Node, at: &mut Path, found: &mut Vec<(Path, &'n Node)>) {
+pub(super) fn sources_in<'n>(node: &'n Node, at: &mut Path, found: &mut Vec<(Path, &'n Node)>) {
     match &node.value {
         Value::String(text) if text.starts_with('=') => found.push((at.clone(), node)),
         Value::Object(members) if is_form(members) => found.push((at.clone(), node)),

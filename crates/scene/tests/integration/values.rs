@@ -339,7 +339,7 @@ fn numbers_of_transforms_that_move_are_those_that_are_read() {
     let [grown, still] = [7, 8].map(|i| scene.at_frame(1.0).unwrap().description.objects[i].transform.clone());
     assert_eq!(grown, [TransformStep::Translate(Vec3::new(1.0, 2.0, 3.0))]);
     assert_ne!(still, grown);
-    // What cannot be a number is told as it is when it is read.
+    // A number too large for 32 bits is refused with its place.
     let text =
         r#"{"version": 1, "objects": [{"shape": "sphere", "transform": {"translate": ["=1e39 * frame", 0, 0]}}]}"#;
     let error = Scene::from_json(text, "huge.json").unwrap().at_frame(1.0).unwrap_err().to_string();
